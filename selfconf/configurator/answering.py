@@ -13,7 +13,7 @@ from selfconf.configurator import deploying, losing, phases
 from selfconf.configurator.deploying import DEPLOYING, Reaction, then
 from selfconf.configurator.disconnecting import disconnect
 from selfconf.configurator.effects import Decline, ReleaseFrom
-from selfconf.configurator.events import Answered, Call
+from selfconf.configurator.events import Answered, Call, Unanswered
 from selfconf.configurator.state import Applied, Loss, Phase, State
 from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
@@ -83,17 +83,16 @@ def _loss_by(event: Answered, state: State, again: bool) -> Loss:
     Its site ends a life that does not obey its release, and can start it again; if it does not, once is enough. What
     has gone without a word, and with its site, may come back with it.
     """
-    silent = event.verdict is None
-    detail = event.detail or ("it does not answer" if event.verdict is None else event.verdict.value)
-    startable = silent and event.startable and event.call is not Call.WAKE and again
-    cause = Cause.CRASH if event.site_unseen and event.component in state.ended_lives else Cause.REFUSED
-    return Loss(cause, detail, event.life, answered=not silent, startable=startable)
+    startable = event.verdict is Unanswered.SILENT and event.startable and again
+    is_gone = event.verdict is Unanswered.SITE_UNSEEN and event.component in state.ended_lives
+    cause, detail = Cause.CRASH if is_gone else Cause.REFUSED, event.detail or event.verdict.value
+    return Loss(cause, detail, event.life, answered=isinstance(event.verdict, Verdict), startable=startable)
 
 
 def _told(state: State, event: Answered) -> State:
     """Note that a component that has declined a reserve is not held by that; one that was adopted is to be claimed."""
     held = state.held[event.component] if event.call is Call.RESERVE else None
-    if held is None or event.verdict is None or held.is_adopted:
+    if held is None or isinstance(event.verdict, Unanswered) or held.is_adopted:
         return state
     return replace(state, held={**state.held, event.component: replace(held, asked=False)})
 

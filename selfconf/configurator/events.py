@@ -25,6 +25,19 @@ class Call(str, Enum):
     RELEASE = "release"
 
 
+class Unanswered(str, Enum):
+    """Why nothing is known of what a call has come to, where the component has not answered it."""
+
+    SILENT = "it does not answer"
+    """It lives, and has neither answered nor done what it was asked in time."""
+    ENDED = "its life has ended"
+    """It was to be turned off, and its life has ended, or seems to have: it may act on out of sight."""
+    NOT_STARTED = "it was not started"
+    """It was to be started: nothing starts it, or its site could not, or not in time."""
+    SITE_UNSEEN = "its site does not answer"
+    """It was to be started by a site that cannot be reached either: both may only be cut off."""
+
+
 @immutable
 class Accepted:
     """A task is to be configured. Epochs start above `epoch`, so that they are newer than those of earlier runs.
@@ -78,12 +91,12 @@ class Composed:
 
 @immutable
 class Answered:
-    """A component has answered a call, or could not be reached (no verdict)."""
+    """A component has answered a call, or it is known by now that it does not."""
 
     component: IRI
     call: Call
     epoch: int
-    verdict: Verdict | None
+    verdict: Verdict | Unanswered
     life: str = ""
     newest: int = 0
     detail: str = ""
@@ -95,8 +108,6 @@ class Answered:
     """Whether a component that is reserved acts for this task, as one does that was given up when it was cut off."""
     startable: bool = False
     """Whether the site of the component can start it again."""
-    site_unseen: bool = False
-    """Whether its site, which was to start it, could not be reached either: both may only be cut off."""
 
 
 @immutable

@@ -5,7 +5,17 @@ from __future__ import annotations
 from dataclasses import replace
 
 from selfconf.configurator.effects import ApplyTo, Effect, ReleaseFrom, ReserveOf
-from selfconf.configurator.events import Accepted, Answered, Call, Composed, Discovered, Event, Failed, Stopped
+from selfconf.configurator.events import (
+    Accepted,
+    Answered,
+    Call,
+    Composed,
+    Discovered,
+    Event,
+    Failed,
+    Stopped,
+    Unanswered,
+)
 from selfconf.configurator.machine import step
 from selfconf.configurator.state import Phase, Policy, State
 from selfconf.model.configuration import Assignment, Configuration, Connection, ParameterSetting
@@ -83,14 +93,14 @@ class History:
         self,
         component: IRI,
         call: Call,
-        verdict: Verdict | None = Verdict.DONE,
+        verdict: Verdict | Unanswered = Verdict.DONE,
         life: str = "1",
         holder: Holder | None = None,
         shared: bool = False,
         acts: bool = False,
     ) -> list[Effect]:
         """A component answers the call that it is waited for."""
-        epoch, life = self.state.epoch, life if verdict else ""
+        epoch, life = self.state.epoch, life if isinstance(verdict, Verdict) else ""
         return self.hear(Answered(component, call, epoch, verdict, life, epoch, "", holder, shared, acts))
 
     def busy(self, component: IRI, holder: Holder = OTHERS, call: Call = Call.RESERVE) -> list[Effect]:

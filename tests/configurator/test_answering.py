@@ -26,6 +26,7 @@ from selfconf.configurator.events import (
     Failed,
     Freed,
     Stopped,
+    Unanswered,
 )
 from selfconf.configurator.state import Phase, State
 from selfconf.model.refusal import Undecided
@@ -119,7 +120,7 @@ def test_a_task_waits_for_what_it_was_to_let_go_of_itself_once_that_has_obeyed()
     """A component that hangs, as another task waits for it, may be had again when that one has let go of it."""
     state = waiting().state
     history = History(replace(state, owed={TRACKER: state.epoch}))
-    assert history.answer(TRACKER, Call.RELEASE, None) == []
+    assert history.answer(TRACKER, Call.RELEASE, Unanswered.SILENT) == []
     assert history.answer(TRACKER, Call.RELEASE) == [QueueFor(TRACKER, state.epoch + 1)]
     assert history.answer(TRACKER, Call.RELEASE) == [], "once"
     assert history.hear(Freed(TRACKER)) == [Discover()]

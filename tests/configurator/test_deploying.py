@@ -28,6 +28,7 @@ from selfconf.configurator.events import (
     Discovered,
     Failed,
     HandedOver,
+    Unanswered,
 )
 from selfconf.configurator.starting_order import plan_of, wiring
 from selfconf.configurator.state import Held, Loss, Phase, Policy
@@ -114,7 +115,7 @@ def test_nothing_is_applied_to_before_all_are_reserved() -> None:
 def test_a_component_that_cannot_be_woken_is_lost() -> None:
     history = History().accepted()
     history.composed(navigation())
-    effects = history.answer(TRACKER, Call.WAKE, None)
+    effects = history.answer(TRACKER, Call.WAKE, Unanswered.NOT_STARTED)
     assert effects[-1] == Compose(2, frozenset({TRACKER}), navigation())
     assert not history.state.lost[TRACKER].answered
 

@@ -46,6 +46,7 @@ from selfconf.configurator.events import (
     Rewired,
     StayedAway,
     Stopped,
+    Unanswered,
     WaitedLong,
 )
 from selfconf.configurator.machine import step
@@ -90,7 +91,7 @@ ONE_OF_EACH: list[Event] = [
         for component in (TRACKER, CONTROL, ODOMETRY)
         for call in Call
         for epoch in (1, 100, 101, 102, 103)
-        for verdict in (*Verdict, None)
+        for verdict in (*Verdict, *Unanswered)
         for holder in ([None, *HOLDERS, SELF] if verdict is Verdict.BUSY else [None])
         for shared in ((False, True) if holder is not None and call is Call.APPLY else (False,))
     ),
@@ -313,7 +314,7 @@ def event_of(state: State, numbers: tuple[int, ...]) -> Event:
     component = EVERYBODY[who % len(EVERYBODY)]
     if state.pending and kind < 28:
         component, call = sorted(state.pending)[who % len(state.pending)]
-        verdict = ([Verdict.DONE] * 8 + [*Verdict, None])[how % (9 + len(Verdict))]
+        verdict = ([Verdict.DONE] * 8 + [*Verdict, *Unanswered])[how % (8 + len(Verdict) + len(Unanswered))]
         holder = [*HOLDERS, SELF, None][when % (2 + len(HOLDERS))] if verdict is Verdict.BUSY else None
         newest = state.epoch + when % 3
         return Answered(component, call, state.epoch, verdict, str(which % 2), newest, holder=holder)
@@ -329,7 +330,7 @@ def event_of(state: State, numbers: tuple[int, ...]) -> Event:
     if kind < 38:
         return Composed(state.attempt, _found(state, how))
     if kind < 41:
-        verdict = [*Verdict, None][how % (1 + len(Verdict))]
+        verdict = [*Verdict, *Unanswered][how % (len(Verdict) + len(Unanswered))]
         calls = list(Call)
         return Answered(component, calls[which % len(calls)], max(0, state.epoch - when % 3), verdict, "1", state.epoch)
     if kind < 46:
@@ -386,7 +387,7 @@ def test_from_every_state_a_stop_ends_once_the_pending_calls_have_ended(
     state, _ = step(state, Stopped())
     for _ in range(2 * len(EVERYBODY)):
         for component, call in sorted(state.pending):
-            state, _ = step(state, Answered(component, call, state.epoch, None))
+            state, _ = step(state, Answered(component, call, state.epoch, Unanswered.SILENT))
     assert state.phase in (Phase.STOPPED, Phase.REFUSED)
     assert state.ended
     assert not state.held

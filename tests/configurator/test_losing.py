@@ -17,6 +17,7 @@ from selfconf.configurator.events import (
     Freed,
     Reconnected,
     StayedAway,
+    Unanswered,
 )
 from selfconf.configurator.state import MOST_PUT_OFF, Phase, State
 from selfconf.protocol.messages import Cause, Verdict
@@ -105,7 +106,7 @@ def test_what_could_not_be_reached_stays_lost_when_another_component_appears() -
     history = lost(patient=True)
     history.composed(navigation(ODOMETRY))
     history.all_answer(Call.WAKE, Call.RESERVE)
-    history.answer(ODOMETRY, Call.APPLY, None)
+    history.answer(ODOMETRY, Call.APPLY, Unanswered.SILENT)
     assert ODOMETRY in history.state.lost
     history.hear(Appeared({DRIVE: "2"}))
     assert ODOMETRY in history.state.lost
@@ -261,7 +262,7 @@ def test_what_its_site_starts_no_more_is_a_reason_to_refuse() -> None:
     history = lost()
     history.composed(REFUSAL)
     history.composed(navigation())
-    history.answer(TRACKER, Call.WAKE, None)
+    history.answer(TRACKER, Call.WAKE, Unanswered.NOT_STARTED)
     assert not history.state.lost[TRACKER].startable
     history.composed(REFUSAL)
     history.all_answer()
@@ -273,10 +274,7 @@ def test_what_has_gone_with_its_site_may_be_cut_off_and_is_waited_for_a_moment()
     history = lost()
     history.composed(REFUSAL)
     history.composed(navigation())
-    unseen = Answered(
-        TRACKER, Call.WAKE, history.state.epoch, None, detail="its site does not answer", site_unseen=True
-    )
-    history.hear(unseen)
+    history.answer(TRACKER, Call.WAKE, Unanswered.SITE_UNSEEN)
     assert (history.state.lost[TRACKER].cause, history.state.lost[TRACKER].answered) == (Cause.CRASH, False)
     since = history.state.attempt
     assert history.composed(REFUSAL) == [AwaitReturn(since)]
@@ -287,7 +285,7 @@ def test_what_has_gone_with_its_site_may_be_cut_off_and_is_waited_for_a_moment()
 def test_what_was_not_there_before_is_not_waited_for_where_its_site_cannot_be_reached() -> None:
     history = History().accepted()
     history.composed(navigation())
-    history.hear(Answered(TRACKER, Call.WAKE, history.state.epoch, None, site_unseen=True))
+    history.answer(TRACKER, Call.WAKE, Unanswered.SITE_UNSEEN)
     assert history.state.lost[TRACKER].cause is Cause.REFUSED
     history.composed(REFUSAL)
     assert history.state.phase is Phase.DISMANTLING
@@ -307,11 +305,11 @@ def test_what_says_that_its_life_is_over_is_searched_with_if_its_site_can_start_
     assert history.composed(REFUSAL) == [again if startable else AwaitReturn(history.state.attempt)]
 
 
-def silent(history: History, call: Call) -> None:
+def silent(history: History, call: Call, why: Unanswered = Unanswered.SILENT) -> None:
     """The tracker, which its site can start, does not answer a call."""
     while (TRACKER, call) not in history.state.pending:
         history.answer(*min(history.state.pending))
-    history.hear(Answered(TRACKER, call, history.state.epoch, None, startable=True))
+    history.hear(Answered(TRACKER, call, history.state.epoch, why, startable=True))
 
 
 def test_the_end_of_a_life_that_hangs_is_heeded_where_it_was_to_be_reserved_and_does_not_answer() -> None:
@@ -358,7 +356,7 @@ def test_each_life_that_does_not_answer_is_followed_by_another_as_often_as_its_s
 def test_a_site_that_does_not_start_what_it_can_start_is_not_asked_again() -> None:
     history = History().accepted()
     history.composed(navigation())
-    silent(history, Call.WAKE)
+    silent(history, Call.WAKE, Unanswered.NOT_STARTED)
     history.composed(REFUSAL)
     assert history.state.phase is Phase.DISMANTLING
 

@@ -25,6 +25,7 @@ from selfconf.configurator.events import (
     Failed,
     Reconnected,
     Stopped,
+    Unanswered,
 )
 from selfconf.configurator.state import Phase
 from selfconf.protocol.messages import Cause, Verdict
@@ -80,9 +81,9 @@ def test_the_result_of_an_older_search_is_passed_over() -> None:
 
 
 @pytest.mark.parametrize("call", [Call.RESERVE, Call.APPLY])
-@pytest.mark.parametrize("verdict", [Verdict.REFUSED, Verdict.BUSY, None])
+@pytest.mark.parametrize("verdict", [Verdict.REFUSED, Verdict.BUSY, Unanswered.SILENT])
 def test_a_component_that_will_not_be_had_is_dropped_and_the_search_runs_again(
-    call: Call, verdict: Verdict | None
+    call: Call, verdict: Verdict | Unanswered
 ) -> None:
     history = History(TASK).reserved() if call is Call.APPLY else History(TASK).accepted()
     if call is Call.RESERVE:
@@ -94,7 +95,11 @@ def test_a_component_that_will_not_be_had_is_dropped_and_the_search_runs_again(
     assert released(effects) == [TRACKER]
     assert effects[-1] == Compose(2, frozenset({TRACKER}), navigation())
     loss = history.state.lost[TRACKER]
-    assert (loss.cause, loss.busy, loss.answered) == (Cause.REFUSED, verdict is Verdict.BUSY, verdict is not None)
+    assert (loss.cause, loss.busy, loss.answered) == (
+        Cause.REFUSED,
+        verdict is Verdict.BUSY,
+        isinstance(verdict, Verdict),
+    )
     history.composed(navigation(ODOMETRY))
     assert reserved(history.answer(ODOMETRY, Call.WAKE)) == [ODOMETRY]
     assert applied(history.answer(ODOMETRY, Call.RESERVE)) == [ODOMETRY]
@@ -134,7 +139,7 @@ def test_dismantling_releases_all_components_before_the_search_sinks_first() -> 
 def test_a_component_that_seems_to_have_crashed_is_released_and_owed_that_until_it_obeys() -> None:
     history = History().running()
     assert released(history.hear(Failed(TRACKER, "1", Cause.CRASH))) == [TRACKER]
-    history.hear(Answered(TRACKER, Call.RELEASE, history.state.owed[TRACKER], None))
+    history.hear(Answered(TRACKER, Call.RELEASE, history.state.owed[TRACKER], Unanswered.SILENT))
     assert TRACKER in history.state.owed
 
 
@@ -232,7 +237,7 @@ def test_a_release_that_could_not_be_delivered_stays_owed() -> None:
     history = History().running()
     history.hear(Failed(TRACKER, "1", Cause.FAIL))
     epoch = history.state.owed[TRACKER]
-    history.hear(Answered(TRACKER, Call.RELEASE, epoch, None))
+    history.hear(Answered(TRACKER, Call.RELEASE, epoch, Unanswered.SILENT))
     assert TRACKER in history.state.owed
     history.hear(Answered(TRACKER, Call.RELEASE, epoch - 1, Verdict.DONE))
     assert TRACKER in history.state.owed

@@ -16,6 +16,7 @@ from selfconf.configurator.events import (
     Freed,
     Reconnected,
     Stopped,
+    Unanswered,
 )
 from selfconf.configurator.state import Phase, Policy
 from selfconf.model.term import IRI
@@ -57,7 +58,7 @@ def test_a_stop_while_dismantling_for_a_search_ends_it() -> None:
 def test_a_stop_does_not_wait_for_a_component_that_cannot_be_reached() -> None:
     history = History().running()
     assert released(history.hear(Stopped())) == [DRIVE]
-    assert released(history.answer(DRIVE, Call.RELEASE, None)) == [CONTROL]
+    assert released(history.answer(DRIVE, Call.RELEASE, Unanswered.SILENT)) == [CONTROL]
     assert released(history.answer(CONTROL, Call.RELEASE)) == [TRACKER]
     assert history.answer(TRACKER, Call.RELEASE) == [Finish()]
     assert history.state.owed.keys() == {DRIVE}

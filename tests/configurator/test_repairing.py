@@ -22,6 +22,7 @@ from selfconf.configurator.events import (
     Improvable,
     Rewired,
     Stopped,
+    Unanswered,
 )
 from selfconf.configurator.state import Phase, Policy
 from selfconf.model.configuration import Assignment, Configuration, Connection
@@ -347,7 +348,9 @@ def test_what_is_not_needed_any_more_is_released_sinks_first() -> None:
     assert released(history.answer(ODOMETRY, Call.APPLY)) == [DRIVE]
     assert set(history.state.held) == history.state.watched == {ODOMETRY}
     assert history.state.owed.keys() == {TRACKER, CONTROL, DRIVE}
-    assert released(history.answer(DRIVE, Call.RELEASE, None)) == [CONTROL]  # what does not obey holds up no other
+    assert released(history.answer(DRIVE, Call.RELEASE, Unanswered.SILENT)) == [
+        CONTROL
+    ]  # what does not obey holds up no other
     assert released(history.answer(CONTROL, Call.RELEASE)) == []
     assert history.state.owed.keys() == {TRACKER, DRIVE}
 

@@ -21,6 +21,7 @@ from selfconf.configurator.events import (
     Failed,
     Freed,
     Improvable,
+    Unanswered,
     WaitedLong,
 )
 from selfconf.configurator.state import Held, Phase, State
@@ -99,7 +100,7 @@ def test_what_has_not_obeyed_its_release_may_be_held_in_the_next_deployment(obey
     for component in (CONTROL, DRIVE, TRACKER):
         if (component, Call.RELEASE) in history.state.pending:
             kept = component == DRIVE and not obeyed
-            history.answer(component, Call.RELEASE, None if kept else Verdict.DONE)
+            history.answer(component, Call.RELEASE, Unanswered.SILENT if kept else Verdict.DONE)
     history.composed(navigation())
     history.all_answer(Call.WAKE)
     effects = history.busy(CONTROL, RESERVING)

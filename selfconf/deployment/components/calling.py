@@ -13,7 +13,7 @@ from functools import partial
 from typing import TypedDict
 
 from selfconf.bus.port import Replies
-from selfconf.configurator import Answered, Appeared, Call
+from selfconf.configurator import Answered, Appeared, Call, Unanswered
 from selfconf.deployment.components.held_lives import HeldLives
 from selfconf.deployment.run_request import TaskIdentity
 from selfconf.deployment.task_context import TaskContext
@@ -60,7 +60,7 @@ class _ClaimFields(TypedDict):
 CallMessage = Reserve | Apply | Release
 """What goes with a call to a component, and says which call it is."""
 _CALL_OF: dict[type[CallMessage], Call] = {Reserve: Call.RESERVE, Apply: Call.APPLY, Release: Call.RELEASE}
-Unanswered = Callable[[Callable[[], None]], None]
+LastResort = Callable[[Callable[[], None]], None]
 """What is done where a call has not been answered in time; it is given what there is to do otherwise."""
 
 
@@ -104,14 +104,14 @@ class Calling:
 
         self.bus.ask(self.keys.call(component, "state"), encode(StateOf(self.identity.task)), CALL, answered)
 
-    def call(self, component: IRI, message: CallMessage, unanswered: Unanswered | None = None) -> None:
+    def call(self, component: IRI, message: CallMessage, last_resort: LastResort | None = None) -> None:
         """Make a call; what has become of it is stepped, as `Answered`.
 
-        `unanswered` is called once, where no answer has come in time, or none to the question for the component's
+        `last_resort` is called once, where no answer has come in time, or none to the question for the component's
         state, with what there is to do otherwise: to ask for the state, or to give up.
         """
         self._latest[component] = message
-        _PendingCall(self, component, message, unanswered).make()
+        _PendingCall(self, component, message, last_resort).make()
 
     def stands(self, component: IRI, message: CallMessage) -> bool:
         """Whether a call holds in later epochs as well: it brings to rest what is held, and is the last one to that."""
@@ -167,7 +167,7 @@ class Calling:
         """It is not known what has become of a call, and nothing more is tried: report it, and step soon."""
         call = _CALL_OF[type(message)]
         self._report(ComponentUnreachable(component, call.value, detail))
-        answer = Answered(component, call, message.epoch, None, detail=detail)
+        answer = Answered(component, call, message.epoch, Unanswered.SILENT, detail=detail)
         self.bus.wake_up(lambda: self.step(answer))
 
     def claim(self, component: IRI, epoch: int) -> _ClaimFields:
@@ -192,9 +192,9 @@ class Calling:
 class _PendingCall:
     """One call to one component, made once or several times, until it is known what has become of it."""
 
-    def __init__(self, calling: Calling, component: IRI, message: CallMessage, unanswered: Unanswered | None) -> None:
+    def __init__(self, calling: Calling, component: IRI, message: CallMessage, last_resort: LastResort | None) -> None:
         self._calling, self._component, self._message = calling, component, message
-        self._unanswered = unanswered
+        self._last_resort = last_resort
         self._made = 0
         """How often the call was made."""
         self._first = self._last = calling.bus.now()
@@ -224,9 +224,9 @@ class _PendingCall:
 
     def _do_unanswered(self, otherwise: Callable[[], None]) -> None:
         """Do once what the caller does where no answer comes; it is given what there is to do otherwise."""
-        unanswered, self._unanswered = self._unanswered, None
-        if unanswered is not None:
-            unanswered(otherwise)
+        last_resort, self._last_resort = self._last_resort, None
+        if last_resort is not None:
+            last_resort(otherwise)
         else:
             otherwise()
 

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from functools import partial
 
 from selfconf.bus.port import Replies
-from selfconf.configurator import Answered, Call, ReleaseFrom
+from selfconf.configurator import Answered, Call, ReleaseFrom, Unanswered
 from selfconf.deployment.components.calling import CALL, Calling
 from selfconf.deployment.components.held_lives import HeldLives
 from selfconf.deployment.components.waking import Waking
@@ -50,7 +50,8 @@ class Releases:
         if not self._lives.lives_on(component):
             self._lives.leave_behind(component)
             never_acted = self._lives.never_acted(component)
-            off = Answered(component, Call.RELEASE, effect.epoch, Verdict.OTHER_LIFE if never_acted else None)
+            ended = Verdict.OTHER_LIFE if never_acted else Unanswered.ENDED
+            off = Answered(component, Call.RELEASE, effect.epoch, ended)
             self._bus.wake_up(lambda: self._step(off))
             if not never_acted:
                 self._release_unseen(effect, message)

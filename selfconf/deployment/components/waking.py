@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from selfconf.bus.port import Replies, Undo
-from selfconf.configurator import Answered, Call, WakeUp
+from selfconf.configurator import Answered, Call, Unanswered, WakeUp
 from selfconf.deployment.components.held_lives import HeldLives
 from selfconf.deployment.task_context import TaskContext
 from selfconf.discovery import FoundAdvertisement
@@ -110,7 +110,9 @@ class Waking:
         for waiting in list(self._waiting.values()):
             found = self._ecology.discovery.found.get(waiting.effect.component)
             if found is not None and found.site == site:
-                self._bus.later(SITE_BACK, partial(self._give_up, waiting, "its site has ended", site_unseen=True))
+                self._bus.later(
+                    SITE_BACK, partial(self._give_up, waiting, "its site has ended", Unanswered.SITE_UNSEEN)
+                )
 
     def _start_by_site(self, effect: WakeUp, found: FoundAdvertisement) -> None:
         """Have the site start the process; that is done when the component lives."""
@@ -135,19 +137,19 @@ class Waking:
             elif replies.errors:
                 self._give_up(waiting, replies.errors[0])
             else:
-                self._give_up(waiting, "its site does not answer", site_unseen=True)
+                self._give_up(waiting, "its site does not answer", Unanswered.SITE_UNSEEN)
 
         wake = Wake(component, self._lives.lost_life(component))
         self._bus.ask(self._ecology.keys.wake(waiting.site), encode(wake), WAKE_CALL, answered)
 
-    def _give_up(self, waiting: _Start, detail: str, *, site_unseen: bool = False) -> None:
+    def _give_up(self, waiting: _Start, detail: str, why: Unanswered = Unanswered.NOT_STARTED) -> None:
         """Do without a component that was to be started, unless it lives by now or is being started anew."""
         component = waiting.effect.component
         if self._waiting.get(component) is waiting:
             self.abandon(component)
-            self._fail(waiting.effect, detail, site_unseen)
+            self._fail(waiting.effect, detail, why)
 
-    def _fail(self, effect: WakeUp, detail: str, site_unseen: bool = False) -> None:
+    def _fail(self, effect: WakeUp, detail: str, why: Unanswered = Unanswered.NOT_STARTED) -> None:
         """Say soon that a component cannot be had, unless it lives by then: nothing would disprove that loss again."""
 
         def fail() -> None:
@@ -156,6 +158,6 @@ class Waking:
                 return
             self._report(ComponentUnreachable(effect.component, Call.WAKE.value, detail))
             component, epoch = effect.component, effect.epoch
-            self._step(Answered(component, Call.WAKE, epoch, None, detail=detail, site_unseen=site_unseen))
+            self._step(Answered(component, Call.WAKE, epoch, why, detail=detail))
 
         self._bus.wake_up(fail)
