@@ -28,9 +28,9 @@ from selfconf.access.refusal_reports import RefusalReports
 from selfconf.access.rules import AccessRules, rules_of
 from selfconf.access.shown_certificates import Process, ShownCertificates, holders
 from selfconf.bus.answering import answering
-from selfconf.bus.coalesced import Coalesced
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Bus, Replies, Request
+from selfconf.bus.timer import Timer
 from selfconf.bus.zenoh import RefusalLog
 from selfconf.errors import PeerError, SelfconfError
 from selfconf.files import FileStamp, stamp
@@ -132,7 +132,7 @@ class Doorkeeper:
         self._reports = RefusalReports(bus, hub.refusals, complain, lambda one: self.rules.allow(one))
         self._faults: dict[str, float] = {}
         """What was said to be wrong with the keys or the hub, and when."""
-        self._renew_rules_soon = Coalesced(bus, 0.0, self._renew_rules)  # once what is done now is done
+        self._renew_rules_soon = Timer(bus, 0.0, self._renew_rules)  # once what is done now is done
         self._renews_components = False
         """Whether the certificates of components are being renewed."""
         self._shown, self._stamps = stamp(self._credentials.certificate), dict[Path, FileStamp]()
@@ -143,7 +143,7 @@ class Doorkeeper:
         bus.serve(self._keys.introduce(site.name), self._introduced)
         bus.serve(self._keys.access(site.name), self._tell)
         self._others = OtherSites(bus, self._keys, site.name, self._others_answered)
-        bus.subscribe(self._keys.changed(), lambda _: self._others.ask_soon())
+        bus.subscribe(self._keys.changed(), lambda _: self._others.ask_soon.set())
         bus.watch(self._keys.any_site_life(), self._site_changed)
         CertificateWatch(bus, site.ecology, site.credentials, complain, distrusted=hub.distrusted)
         for pause in INTRODUCTIONS:
@@ -161,7 +161,7 @@ class Doorkeeper:
                 self._reopening.within(RENEWED_TOGETHER)
             known = self.rules.knows(shown.principals)
             if not known:
-                self._renew_rules_soon()
+                self._renew_rules_soon.set()
             known = known and not self._reopening.is_near  # perhaps that is as the hub does not know it yet
             beside = tuple(sorted(self._hub.sites()))
             request.reply(self._keys.introduce(self._name), encode(Introduction(self._own_pem(), known, beside)))

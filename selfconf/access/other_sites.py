@@ -11,8 +11,8 @@ from collections.abc import Callable, Sequence
 from itertools import islice
 from typing import TypeGuard
 
-from selfconf.bus.coalesced import Coalesced
-from selfconf.bus.port import Bus, Replies, Undo
+from selfconf.bus.port import Bus, Replies
+from selfconf.bus.timer import Timer
 from selfconf.errors import PeerError
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import MOST_ADVERTISED, decode, encode
@@ -40,9 +40,9 @@ class OtherSites:
         self._lives: dict[str, set[str]] = {}
         self._away: dict[str, float] = {}
         """Since when no life of a site is there, of those of which one was."""
-        self.ask_soon = Coalesced(bus, SOON, self._ask)
+        self.ask_soon = Timer(bus, SOON, self._ask)
         """Asks them what they advertise: something has changed."""
-        self._undo_asking_again: Undo = lambda: None
+        self._ask_again = Timer(bus, ASK_SITES_AGAIN, self.ask_soon.set)
 
     def advertised(self) -> dict[str, frozenset[IRI]]:
         """The components that each other site advertises, as far as is known."""
@@ -62,7 +62,7 @@ class OtherSites:
         if not lives:
             del self._lives[site]
             self._away[site] = self._bus.now()
-        self.ask_soon()
+        self.ask_soon.set()
 
     def _ask(self) -> None:
         known = encode(Known(dict(self._revisions)))
@@ -78,9 +78,9 @@ class OtherSites:
             self._revisions |= {f"{site}/{page.life}": page.revision for page, _ in pages}
             vouched = (page.component for page, key in pages if self._is_advertised(page.component, site, key))
             self._advertised[site] = frozenset(islice(vouched, MOST_ADVERTISED))
-        self._undo_asking_again()
+        self._ask_again.stop()
         if in_part or not replies.complete:
-            self._undo_asking_again = self._bus.later(ASK_SITES_AGAIN, self.ask_soon)
+            self._ask_again.set()
         self._heard()
 
     def _news(self, replies: Replies) -> dict[str, list[tuple[Page, str]]]:

@@ -53,7 +53,7 @@ class Loop:
         """Whether `_waiting` holds the mark that lets one of the bulk run."""
         self.dropped = 0
         """How many messages were driven out of the bulk, or found no room among the urgent."""
-        self._timers: list[tuple[float, int, _Timer]] = []
+        self._timers: list[tuple[float, int, _TimedAction]] = []
         self._timer_lock = threading.Lock()
         self._taken_back = 0
         """How many entries of the heap were taken back; they stay until their time, or until they are the majority."""
@@ -120,7 +120,7 @@ class Loop:
 
     def later(self, seconds: float, action: Callable[[], None]) -> Callable[[], None]:
         """Call `action` once, after that time; the result takes it back. May be called from any thread."""
-        timer = _Timer(action)
+        timer = _TimedAction(action)
         with self._timer_lock:
             heapq.heappush(self._timers, (self.now() + seconds, next(self._count), timer))
         if self._thread is not None and self._thread is not threading.current_thread():
@@ -222,7 +222,7 @@ class Loop:
 
 
 @dataclass(slots=True, eq=False)
-class _Timer:
+class _TimedAction:
     """A callback to be run at a time; no action is left once it was run or taken back."""
 
     action: Callable[[], None] | None

@@ -10,7 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Set
 from functools import partial
 
-from selfconf.bus.port import Bus, Undo
+from selfconf.bus.port import Bus
+from selfconf.bus.timer import Timer
 from selfconf.composites.inside_of_composite import InsideOfComposite
 from selfconf.composition import Inside
 from selfconf.deployment import Aside, RunRequest
@@ -52,8 +53,8 @@ class LivesOfComposite:
         """As what it was advertised when its life began."""
         self._begins = False
         """Whether it is about to begin a life."""
-        self._undo_look: Undo = lambda: None
-        """Undoes the next look at an inside that was refused."""
+        self._next_look = Timer(bus, LOOK_AT_REFUSED, self._look_again)
+        """The next look at an inside that was refused."""
         self._pause = LOOK_AT_REFUSED
         """After how many seconds it is looked again, where it has begun a new life for that and has not run since."""
 
@@ -135,9 +136,9 @@ class LivesOfComposite:
         self._look_later()
 
     def _look_later(self) -> None:
-        self._undo_look()
+        self._next_look.stop()
         if self.living is not None and self.living.prospect is not None:
-            self._undo_look = self._bus.later(self._pause_after(self.living), self._look_again)
+            self._next_look.set(self._pause_after(self.living))
 
     def _pause_after(self, living: InsideOfComposite) -> float:
         """After how many seconds it is checked again whether the inside can be configured."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from selfconf.bus.port import Undo
+from selfconf.bus.timer import Timer
 from selfconf.configurator import Improvable
 from selfconf.deployment.task_context import TaskContext
 from selfconf.model.term import IRI
@@ -25,8 +25,8 @@ class Improvement:
     def __init__(self, context: TaskContext, settling: float | None) -> None:
         """`settling`: after how many seconds what has appeared may be rather had; None: what runs is kept."""
         self._bus, self._step, self._settling = context.ecology.bus, context.step, settling
-        self._undo: Undo = lambda: None
-        self._undo_later: Undo = lambda: None
+        self._look_soon = Timer(context.ecology.bus, 0.0, self._look)
+        self._look_at_others = Timer(context.ecology.bus, LET_GO_OF, self._look)
         self._at_the_latest: float | None = None
         """By when it is looked however much appears; None: nothing that has appeared waits to be looked at."""
         self._unsettled: dict[IRI, float] = {}
@@ -43,17 +43,12 @@ class Improvement:
         self._unsettled |= dict.fromkeys(appeared, now + self._settling)
         if self._at_the_latest is None:
             self._at_the_latest = now + MOST_UNREST * self._settling
-        self._look_in(min(self._settling, self._at_the_latest - now))
+        self._look_soon.reset(max(0.0, min(self._settling, self._at_the_latest - now)))
 
     def look_whether_free(self) -> None:
         """Look, after a while, whether what was left to other tasks is free."""
-        self._undo_later()
         if self._settling is not None:
-            self._undo_later = self._bus.later(LET_GO_OF, self._look)
-
-    def _look_in(self, seconds: float) -> None:
-        self._undo()
-        self._undo = self._bus.later(max(0.0, seconds), self._look)
+            self._look_at_others.reset()
 
     def _look(self) -> None:
         """Look at what has been there for long enough, and at the rest once it has."""
@@ -63,4 +58,4 @@ class Improvement:
         if self._unsettled:
             assert self._settling is not None
             self._at_the_latest = min(self._unsettled.values()) + (MOST_UNREST - 1) * self._settling
-            self._look_in(max(self._unsettled.values()) - now)
+            self._look_soon.reset(max(self._unsettled.values()) - now)

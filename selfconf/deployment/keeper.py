@@ -20,8 +20,8 @@ import time
 from collections.abc import Callable, Collection, Iterable, Set
 from typing import TYPE_CHECKING
 
-from selfconf.bus.coalesced import Coalesced
-from selfconf.bus.port import Bus, Undo, Urgency
+from selfconf.bus.port import Bus, Urgency
+from selfconf.bus.timer import Timer
 from selfconf.configurator import Phase
 from selfconf.deployment.configuration_record import configuration_record, recorded_configuration
 from selfconf.deployment.holders import Holding
@@ -92,9 +92,8 @@ class Keeper:
         self._changed = bus.now()
         """When a site has come or gone."""
         self._view = StableView(bus.now, lambda: bus.link)
-        self._unlook: Undo | None = None
-        """Takes back that it will look again; None where it will not."""
-        self._assign_later = Coalesced(bus, LINKED_AGAIN, self._assign)
+        self._look_again = Timer(bus, KEEPER_LOOK, self._look)
+        self._assign_later = Timer(bus, LINKED_AGAIN, self._assign)
         """Looks again once what it sees of the other sites is to be believed, to run a task."""
         self._exchange = RecordExchange(bus, keys, site, folder, self)
         bus.watch(keys.any_site_life(), self._site_changed)
@@ -159,9 +158,7 @@ class Keeper:
 
     def _look(self) -> None:
         """Look from time to time, as what was to be handed over may be free by now."""
-        if self._unlook is not None:
-            self._unlook()
-            self._unlook = None
+        self._look_again.stop()
         for record in list(self.folder.records.values()):
             self._read(record)
         self._assign()
@@ -169,8 +166,8 @@ class Keeper:
 
     def _look_later(self) -> None:
         """Look again in a while; not where there is no task: most sites keep none, and sleep."""
-        if self._unlook is None and self.folder.records:
-            self._unlook = self.bus.later(KEEPER_LOOK, self._look)
+        if self.folder.records:
+            self._look_again.set()
 
     def _assign(self) -> None:
         """Run the tasks that this site is to run; another's only until that begins to run it.
@@ -187,7 +184,7 @@ class Keeper:
             request = self._requests.of(task) if keeper == self.site and not record.ended else None
             if request is not None and task not in self.runners:
                 if wait := self._view.unrest() if linked else LINKED_AGAIN:
-                    self._assign_later(wait)
+                    self._assign_later.set(wait)
                 else:
                     self._run(record, request)
 

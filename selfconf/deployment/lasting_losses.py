@@ -7,7 +7,7 @@ one or another component for so long that its actuators must not act on.
 
 from __future__ import annotations
 
-from selfconf.bus.port import Undo
+from selfconf.bus.timer import Timer
 from selfconf.configurator import LossLasts, Phase
 from selfconf.deployment.task_context import TaskContext
 from selfconf.model.term import IRI
@@ -22,44 +22,36 @@ class LastingLosses:
     """Looks, after what one task has lost, whether that lasts, and feeds its machine with `LossLasts`."""
 
     def __init__(self, context: TaskContext) -> None:
-        self._bus, self._ecology, self._state, self._step = (
-            context.ecology.bus,
-            context.ecology,
-            context.state,
-            context.step,
-        )
-        self._incomplete: Undo | None = None
-        """Undoes the look at what runs that comes when it has lacked a component for long; None if it lacks none."""
-        self._is_planned, self._lost_since_planned = False, False
-        """Whether a look is planned at what was lost, and whether more was lost since."""
+        self._ecology, self._state, self._step = context.ecology, context.state, context.step
+        bus = context.ecology.bus
+        self._incomplete = Timer(bus, LASTS_LONG, self._look_when_it_is_long)
+        """The look at what runs when it has lacked a component for long, while it lacks one."""
+        self._lost_of_late = Timer(bus, LASTS, self._look)
+        """The look at what was lost."""
+        self._lost_since = False
+        """Whether more was lost since that look was planned."""
 
     def lost(self) -> None:
         """A component was lost: look a moment later, and when what runs has lacked one or another for long."""
-        self._lost_since_planned = True
-        if not self._is_planned:
-            self._look_soon()
-        if self._incomplete is None and any(held.active for held in self._state().held.values()):
-            self._incomplete = self._bus.later(LASTS_LONG, self._look_when_it_is_long)
+        self._lost_since = self._lost_of_late.is_set
+        self._lost_of_late.set()
+        if not self._incomplete.is_set and any(held.active for held in self._state().held.values()):
+            self._incomplete.set()
 
     def stepped(self) -> None:
         """Plan no look at what runs for long where it is complete now, or is taken down."""
-        if self._incomplete is not None and self._state().phase in (Phase.RUNNING, Phase.DISMANTLING):
-            self._incomplete()
-            self._incomplete = None
-
-    def _look_soon(self) -> None:
-        self._is_planned, self._lost_since_planned = True, False
-        self._bus.later(LASTS, self._look)
+        if self._state().phase in (Phase.RUNNING, Phase.DISMANTLING):
+            self._incomplete.stop()
 
     def _look(self) -> None:
         """Look once for all that was lost of late, and once more if some was later."""
-        self._is_planned = False
-        if self._lost_since_planned:
-            self._look_soon()
+        if self._lost_since:
+            self._lost_since = False
+            self._lost_of_late.set()
         self._step(LossLasts())
 
     def _look_when_it_is_long(self) -> None:
-        self._incomplete = None  # what begins to act from now on may do so for as long if more is lost
+        """Look once; what begins to act from now on may do so for as long if more is lost."""
         self._step(LossLasts(frozenset(filter(self._is_actuator, self._state().held))))
 
     def _is_actuator(self, component: IRI) -> bool:

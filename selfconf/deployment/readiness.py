@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from selfconf.bus.coalesced import Coalesced
+from selfconf.bus.timer import Timer
 from selfconf.configurator import Phase
 from selfconf.deployment.components import TaskComponents
 from selfconf.deployment.run_request import RunRequest
@@ -19,7 +19,7 @@ class Readiness:
     def __init__(self, context: TaskContext, request: RunRequest, components: TaskComponents) -> None:
         self._bus, self._state, self._request = context.ecology.bus, context.state, request
         self._components = components
-        self.prepare_soon = Coalesced(context.ecology.bus, APPEARED_TOGETHER, self.prepare)
+        self.prepare_soon = Timer(context.ecology.bus, APPEARED_TOGETHER, self.prepare)
         """Makes it ready with all that has appeared for a while, as a process may hold many components."""
 
     def prepare(self) -> None:

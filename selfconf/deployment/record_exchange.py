@@ -13,8 +13,8 @@ from functools import partial
 from typing import Protocol
 
 from selfconf.bus.answering import answering
-from selfconf.bus.coalesced import Coalesced
 from selfconf.bus.port import Bus, Replies, Request, Sample, Urgency
+from selfconf.bus.timer import Timer
 from selfconf.deployment.task_folder import TaskFolder
 from selfconf.errors import PeerError, reason
 from selfconf.model.immutable import replace
@@ -67,7 +67,7 @@ class RecordExchange:
         self._complaints: set[str] = set()
         self._to_ask: dict[str, None] = {}
         """The sites that have come and were not asked once more since."""
-        self._ask_soon = Coalesced(bus, ASK_ONCE_MORE, self._ask_again)
+        self._ask_soon = Timer(bus, ASK_ONCE_MORE, self._ask_again)
         bus.serve(keys.keep(site), self._keep)
         bus.serve(keys.kept_tasks(site), self._answer)
         bus.subscribe(keys.task(), self._take, Urgency.EVENT)
@@ -101,7 +101,7 @@ class RecordExchange:
         """Ask some sites in a moment, and again as long as one lives and does not answer."""
         self._to_ask |= dict.fromkeys(sites)
         if self._to_ask:
-            self._ask_soon()
+            self._ask_soon.set()
 
     def _ask_again(self) -> None:
         for site in list(self._to_ask)[:ASKED_AT_ONCE]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from selfconf.bus.port import Undo
+from selfconf.bus.timer import Timer
 from selfconf.configurator import Appeared, Loss, Phase
 from selfconf.deployment.components import HeldLives
 from selfconf.deployment.task_context import TaskContext
@@ -47,7 +47,7 @@ class RetriesWhileRefused(_Retries):
 
     def __init__(self, context: TaskContext, lives: HeldLives) -> None:
         super().__init__(context, lives)
-        self._undo: Undo = lambda: None
+        self._timer = Timer(self._bus, TRY_AGAIN, self._try_again)
         self._at: float | None = None
         """When it is tried again, which may be overdue; None: no time is set."""
 
@@ -67,8 +67,7 @@ class RetriesWhileRefused(_Retries):
         if self._at is None:
             self._at = now + self._pause
             self._lengthen_pause()
-        self._undo()
-        self._undo = self._bus.later(max(0.0, self._at - now), self._try_again)
+        self._timer.reset(max(0.0, self._at - now))
 
     def _try_again(self) -> None:
         """While the task is refused, try what may act by now, and a search that time ended."""

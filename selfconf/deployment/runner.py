@@ -237,7 +237,7 @@ class TaskRunner:
             self._improvement.settle(event.lives)
             self._search.prepare()
             if event.lives:
-                self._readiness.prepare_soon()
+                self._readiness.prepare_soon.set()
         if isinstance(event, Composed):
             self._search.prepare()  # what was found, or is held by others, may be other than before
             if self.state.left_to_others:

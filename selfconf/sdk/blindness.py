@@ -10,7 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import inf
 
-from selfconf.bus.port import Bus, Undo
+from selfconf.bus.port import Bus
+from selfconf.bus.timer import Timer
 
 TOLERATES = 1.0
 """Seconds for which an actuator acts on with an unfed input, unless its advertisement says otherwise."""
@@ -24,7 +25,7 @@ class Blindness:
         self._bus, self._required, self._tolerates, self._rest = bus, required, tolerates, rest
         self.unfed: dict[str, float] = {}
         """The inputs that are unfed, each with the time since when, by the clock of the bus."""
-        self._timer: Undo | None = None
+        self._timer = Timer(bus, tolerates or 0.0, self._too_long)
         self._amiss = inf
         """Since when something has been amiss, by the clock of the bus, while an input is unfed."""
 
@@ -38,15 +39,15 @@ class Blindness:
         if port in self.unfed:
             return False
         self.unfed[port] = self._bus.now()
-        if self._timer is None and self._tolerates is not None and port in self._required:
-            self._timer = self._bus.later(self._tolerates, self._too_long)
+        if self._tolerates is not None and port in self._required:
+            self._timer.set()
         return True
 
     def has_lasted(self, seconds: float) -> None:
         """Count each unfed input as unfed for so many seconds at least: as long as something has been amiss."""
-        if self._timer is not None:
+        if self._timer.is_set:
             self._amiss = self._bus.now() - seconds  # apart from `unfed`: the code's thread may take one out meanwhile
-            self._timer()
+            self._timer.stop()
             self._too_long()
 
     def end(self, port: str) -> bool:
@@ -66,12 +67,9 @@ class Blindness:
         if self.blind:
             return
         self._amiss = inf
-        if self._timer is not None:
-            self._timer()
-            self._timer = None
+        self._timer.stop()
 
     def _too_long(self) -> None:
-        self._timer = None
         longest = max(
             (
                 self._bus.now() - min(since, self._amiss)
@@ -83,6 +81,6 @@ class Blindness:
         if longest is None or self._tolerates is None:
             return
         if longest < self._tolerates:  # another input was unfed when the timer began, and is fed by now
-            self._timer = self._bus.later(self._tolerates - longest, self._too_long)
+            self._timer.set(self._tolerates - longest)
         else:
             self._rest()

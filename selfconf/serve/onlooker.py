@@ -14,8 +14,8 @@ from functools import partial
 
 from selfconf.api.living.echo import heard_signal
 from selfconf.api.living.output_sources import follow_output
-from selfconf.bus.coalesced import Coalesced
 from selfconf.bus.port import Bus, Replies, Sample, Undo
+from selfconf.bus.timer import Timer
 from selfconf.discovery import FoundAdvertisement
 from selfconf.errors import PeerError
 from selfconf.model.wording import one_line
@@ -73,7 +73,7 @@ class Onlooker:
         self._outputs = [port.name for port in self._profile.signal_outputs][:MOST_OUTPUTS]
         self._glances = {output: _Glance() for output in self._outputs}
         self._fresh: dict[str, Body] = {}
-        self._tell_soon = Coalesced(bus, TOLD_AFTER, self._tell_signals)
+        self._tell_soon = Timer(bus, TOLD_AFTER, self._tell_signals)
         self._ended = False
 
     def begin(self) -> None:
@@ -115,7 +115,7 @@ class Onlooker:
         span = moments[-1] - moments[0] if moments else 0.0
         rate = (len(moments) - 1) / span if span else None
         self._fresh[output] = {**_signal_body(glance.stamps, sample), "rate": rate}
-        self._tell_soon()
+        self._tell_soon.set()
         many = len(glance.moments)
         if many >= GLANCE or (many >= RATE_KNOWN and glance.size >= GLANCE_BYTES):
             glance.undo()

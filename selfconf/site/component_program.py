@@ -25,7 +25,8 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from selfconf.bus.port import Bus, Undo, Urgency
+from selfconf.bus.port import Bus, Urgency
+from selfconf.bus.timer import Timer
 from selfconf.errors import AuthorError, PeerError, reason
 from selfconf.model.log_line import BETWEEN_COMPONENTS
 from selfconf.model.profile import Profile
@@ -104,12 +105,12 @@ class ComponentProgram:
         """The process that is gone, until there is another one."""
         self._ending: _Ending | None = None
         """Of a process that is to end."""
-        self._pause: Undo | None = None
-        """Of a program that is to be started again after a while: ends that."""
+        self._pause = Timer(bus, 0.0, self._launch_again)
+        """Set while the program is to be started again after a pause."""
         self._closed = False
         self._launching = threading.RLock()
         """Held while the process is started: `close`, which any thread may call, waits until it is known."""
-        self._undo_check: Undo = lambda: None
+        self._next_check = Timer(bus, PROCESS_CHECK, self._check)
 
     @property
     def group(self) -> ProcessGroup | None:
@@ -143,7 +144,7 @@ class ComponentProgram:
             self._ending.again = True  # one process at a time; the end of this one is near
         elif self._limit.first(self._bus.now()):
             self._launch()
-        elif self._pause is None:
+        elif not self._pause.is_set:
             if self._last is not None and self._last.counted_as is CountedAs.CRASH:
                 self._start_again()
             else:
@@ -159,7 +160,7 @@ class ComponentProgram:
         if self._ending is None:
             self._check()  # it may have ended a moment ago
         if wanted:
-            self._end_pause()
+            self._pause.stop()
         if self._process is None:
             gone()
         elif self._ending is not None:
@@ -176,11 +177,11 @@ class ComponentProgram:
             process.group.kill()  # it would have to go on, and might act, before it could end by itself
         else:
             process.group.terminate()
-        self._check_in(ENDING_CHECK)
+        self._next_check.reset(ENDING_CHECK)
 
     def give_up(self) -> None:
         """Start it again no more by itself: no component has its command any more."""
-        self._end_pause()
+        self._pause.stop()
         if self._ending is not None:
             self._ending.again = False
 
@@ -206,7 +207,7 @@ class ComponentProgram:
 
     def _launch(self) -> None:
         """Start the process. Raises PeerError."""
-        self._end_pause()
+        self._pause.stop()
         self._last = None
         life = secrets.token_hex(4)
         environment = {
@@ -233,7 +234,7 @@ class ComponentProgram:
             raise PeerError(f"the command of {first} does not start: {reason(error)}") from None
         except ValueError as error:
             raise PeerError(f"the command of {first} cannot be read: {error}") from None
-        self._check_in(PROCESS_CHECK)  # first: whatever breaks below, its end is seen
+        self._next_check.reset(PROCESS_CHECK)  # first: whatever breaks below, its end is seen
         process.follow(self._profiles.values())
         for stream, pipe in group.pipes():
             printed.follow(pipe, stream, self._source(), lambda: self._bus.wake_up(lambda: self._look(process)))
@@ -247,10 +248,6 @@ class ComponentProgram:
             return {KEYS_VARIABLE: str(self._keys_of(min(self._profiles)).absolute())}
         except AuthorError as error:
             raise PeerError(f"there is no certificate for {min(self._profiles)}: {error}") from None
-
-    def _check_in(self, seconds: float) -> None:
-        self._undo_check()
-        self._undo_check = self._bus.later(seconds, self._check)
 
     def _look(self, process: ComponentProcess) -> None:
         """A pipe of a process has ended: mostly the process has too, or does in a moment."""
@@ -272,7 +269,7 @@ class ComponentProgram:
             return
         trouble = process.trouble()
         if trouble is None:
-            self._check_in(max(ENDING_CHECK, min(self._bus.now() - process.silent_since, PROCESS_CHECK)))
+            self._next_check.reset(max(ENDING_CHECK, min(self._bus.now() - process.silent_since, PROCESS_CHECK)))
         else:
             self._end_for(process, *trouble)
 
@@ -281,9 +278,9 @@ class ComponentProgram:
         if waited >= TERMINATION:
             process.group.kill()
         if not process.group.gone() and waited < UNKILLABLE:
-            self._check_in(_next_ending_check(waited))
+            self._next_check.reset(_next_ending_check(waited))
             return
-        self._undo_check()
+        self._next_check.stop()
         process.close()
         self._process, self._last, self._ending = None, process, None
         if ending.again:
@@ -316,15 +313,9 @@ class ComponentProgram:
         """Start the program after a pause, if it has not crashed too often."""
         pause = self._limit.pause(self._bus.now(), self._restarts())
         if pause is not None:
-            self._pause = self._bus.later(pause, self._launch_again)
-
-    def _end_pause(self) -> None:
-        if self._pause is not None:
-            self._pause()
-            self._pause = None
+            self._pause.set(pause)
 
     def _launch_again(self) -> None:
-        self._pause = None
         if not self._closed:
             try:
                 self._launch()

@@ -53,7 +53,7 @@ class Asker:
 
     def ask(self) -> dict[str, frozenset[IRI]]:
         """What is known once the others have been asked."""
-        self.sites.ask_soon()
+        self.sites.ask_soon.set()
         self.network.run(lambda: False, SITES_ANSWER + 0.5)
         return self.sites.advertised()
 
@@ -108,7 +108,7 @@ def test_changes_without_end_keep_none_from_being_asked_nor_have_it_asked_each_t
     asker = Asker()
     strange = Advertiser(asker.network.node(), "strange")
     for _ in range(500):
-        asker.sites.ask_soon()
+        asker.sites.ask_soon.set()
         asker.network.run(lambda: False, 0.002)
     assert 2 <= len(strange.replied) <= 25
     assert 2 <= asker.times <= 25

@@ -37,7 +37,7 @@ from pathlib import Path
 from selfconf import rendezvous, this_machine
 from selfconf.api.sites.announced_site import AnnouncedSite
 from selfconf.api.sites.hub_health import HubHealth
-from selfconf.bus.port import Undo
+from selfconf.bus.timer import Timer
 from selfconf.bus.zenoh import GREETING, Hub, Security, ZenohBus, client, cut_connections, router
 from selfconf.errors import NetworkError
 from selfconf.protocol.keys import Keys
@@ -91,7 +91,7 @@ class Joining:
         """The endpoints of the hubs that there were when this site last had one, or that it has since tried."""
         self._hung_at: float | None = None
         """When the sites that relay are taken to hang; None while there is a hub."""
-        self._look_again: Undo = lambda: None
+        self._next_look = Timer(self.bus, LOOK_AGAIN, self._look)
         self._hub_health = HubHealth(self.bus, Keys(ecology).site_life(name, "*"), self._hub_is_broken)
         self.bus.watch_link(self._link_changed)
         self.bus.later(STILL_MINE, self._look_from_time_to_time)
@@ -207,8 +207,7 @@ class Joining:
             self._reached()
         else:
             self._lost()
-        self._look_again()
-        self._look_again = self.bus.later(random.uniform(0.0, HASTE), self._look)
+        self._next_look.reset(random.uniform(0.0, HASTE))
 
     def _reached(self) -> None:
         """There is a hub; where it is one that has begun since, say so, or others would try the one before first."""
@@ -231,7 +230,7 @@ class Joining:
         # It may have lost its hub before it was announced, and looked in vain. Whether others relay is not looked at:
         # of many sites each would read the files of all.
         if self._is_replaced() or not (self.relays or self.bus.link):
-            self._look_again()
+            self._next_look.stop()
             self._look()
         elif self.bus.link or (self.relays and self._hangs(SLOW)):
             self._hub_health.ask()
@@ -266,7 +265,7 @@ class Joining:
             self._lost()  # when the change was reported, it was not lost yet
         done = self._in_order() or self._looked_in_turn()
         if not done or not self.bus.link:
-            self._look_again = self.bus.later(LOOK_AGAIN, self._look)
+            self._next_look.set()
 
     def _in_order(self) -> bool:
         """Whether there is nothing to change; a turn is not taken then, as one that is stopped in it keeps it."""

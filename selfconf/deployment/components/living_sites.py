@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from selfconf.bus.port import Undo
+from selfconf.bus.timer import Timer
 from selfconf.configurator import Appeared
 from selfconf.deployment.components.waking import Waking
 from selfconf.deployment.task_context import TaskContext
@@ -32,7 +32,7 @@ class LivingSites:
         """The liveliness keys of the sites that have ended since the last discovery, whatever they answer to it."""
         self._last_end = float("-inf")
         """When the life of a site ended the last time."""
-        self._ask_again: Undo = lambda: None
+        self._ask_again = Timer(self._bus, ASK_SITE_AGAIN, lambda: self._step(Appeared({})))
 
     def lives(self, site: str) -> bool:
         """Whether a site lives, as far as is known."""
@@ -50,9 +50,9 @@ class LivingSites:
 
     def ask_again(self, discovery: Discovery) -> None:
         """Ask sites later that were not asked, or have not answered in full."""
-        self._ask_again()  # one such timer at a time: each leads to a discovery, which comes here again
+        self._ask_again.stop()  # it leads to a discovery, which comes here again
         if discovery.missing or not discovery.site_tokens.issuperset(self._shown):
-            self._ask_again = self._bus.later(ASK_SITE_AGAIN, lambda: self._step(Appeared({})))
+            self._ask_again.set()
 
     def back_in(self, living: Collection[str]) -> float:
         """In how many seconds what seems to have ended with a site would be back; 0 or less if no site has ended.

@@ -8,8 +8,10 @@ have the component. All of this happens on the thread of the bus, whatever the c
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
+from functools import partial
 
 from selfconf.bus.port import Bus, Undo
+from selfconf.bus.timer import Timer
 from selfconf.sdk.outputs import SIGNALS_FIRST
 
 GRACE = 1.0
@@ -47,14 +49,14 @@ class _Watched:
     """One supervisor: whether it is alive, and how long it may be gone."""
 
     def __init__(self, bus: Bus, supervisor: str, orphaned: Callable[[str], None]) -> None:
-        self._bus, self._supervisor, self._orphaned = bus, supervisor, orphaned
+        self._bus, self._supervisor = bus, supervisor
         self.gone = False
         """Whether its life was seen to end."""
         self.seen = False
         """Whether it was seen to live."""
-        self._grace: Undo | None = None
+        self._grace = Timer(bus, GRACE, partial(orphaned, supervisor))
         self._watch: Undo | None = None
-        self._begin_grace()  # until its life is seen for the first time
+        self._grace.set()  # until its life is seen for the first time
         self._undo_begin = bus.later(SIGNALS_FIRST, self._begin)
 
     def end(self) -> None:
@@ -62,7 +64,7 @@ class _Watched:
         self._undo_begin()
         if self._watch is not None:
             self._watch()
-        self._end_grace()
+        self._grace.stop()
 
     def _begin(self) -> None:
         self._watch = self._bus.watch(self._supervisor, self._changed)
@@ -70,19 +72,6 @@ class _Watched:
     def _changed(self, _: str, alive: bool) -> None:
         self.gone, self.seen = not alive, True
         if alive:
-            self._end_grace()
+            self._grace.stop()
         else:
-            self._begin_grace()
-
-    def _begin_grace(self) -> None:
-        if self._grace is None:
-            self._grace = self._bus.later(GRACE, self._end_of_grace)
-
-    def _end_grace(self) -> None:
-        if self._grace is not None:
-            self._grace()
-            self._grace = None
-
-    def _end_of_grace(self) -> None:
-        self._grace = None
-        self._orphaned(self._supervisor)
+            self._grace.set()

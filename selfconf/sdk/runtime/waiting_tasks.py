@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from selfconf.bus.port import Bus, Publisher, Undo, Urgency
+from selfconf.bus.timer import Timer
 from selfconf.model.term import IRI
 from selfconf.protocol import activation as table
 from selfconf.protocol.activation import Activation
@@ -48,7 +49,7 @@ class WaitingTasks:
         """Undoes the end of the last offer."""
         self._free: Publisher | None = None
         """What tells tasks that wait for the component that it is free, once one has waited."""
-        self._preemption: Undo | None = None
+        self._preemption = Timer(bus, YIELDING, self._preempt)
         """Set while a task of higher priority waits for those that hold the component to yield."""
 
     def close(self) -> None:
@@ -67,21 +68,18 @@ class WaitingTasks:
             return
         for task in outranked:
             self._ask_holder(task, f"the task {task_name(claim.task)} of priority {claim.priority} asks for it")
-        if self._preemption is None:
-            self._preemption = self._bus.later(YIELDING, self._preempt)
+        self._preemption.set()
 
     def _preempt(self) -> None:
         """Take the component from tasks that have not let go of it in time."""
-        self._preemption = None
         outranked = table.outranked(self._activation())
         if outranked:
             self._let_go(outranked, "a task of higher priority asked for it, and this one has not yielded in time")
 
     def holders_changed(self, activation: Activation) -> None:
         """Take the component from no task, if in that activation those of lower priority have let go of it."""
-        if self._preemption is not None and not table.outranked(activation):
-            self._preemption()
-            self._preemption = None
+        if self._preemption.is_set and not table.outranked(activation):
+            self._preemption.stop()
 
     def offer(self) -> None:
         """Keep the component, if it is free, for the first task that waits, and tell it."""

@@ -12,8 +12,8 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 
-from selfconf.bus.coalesced import Coalesced
-from selfconf.bus.port import Bus, Undo
+from selfconf.bus.port import Bus
+from selfconf.bus.timer import Timer
 from selfconf.discovery import Beliefs, Discovery, EcologyView, FoundAdvertisement
 from selfconf.model.term import IRI
 from selfconf.model.wording import one_line
@@ -52,15 +52,15 @@ class EcologyWatcher:
         self._components: dict[IRI, Body] = {}
         self._chunks: dict[str, IRI] = {}
         self._sites: dict[str, Body] = {}
-        self._flush_soon = Coalesced(bus, TOGETHER, self._flush)
-        self._tasks = TaskWatcher(bus, self.keys, self._happened, self._flush_soon)
+        self._flush_soon = Timer(bus, TOGETHER, self._flush)
+        self._tasks = TaskWatcher(bus, self.keys, self._happened, self._flush_soon.set)
         self._shown: dict[str, Body] = {}
         """The tasks as they were sent last, by identity."""
         self._events: list[Body] = []
         self._touched: set[IRI] = set()
         self._link = self._told_link = ""
         """The link over which was last found what is advertised, and the one over which also what is deployed was."""
-        self._ask_again: Undo = lambda: None
+        self._ask_again = Timer(bus, ASKED_AGAIN, self._discover)
         self._discovering = self._discover_again = self._following = False
 
     def begin(self) -> None:
@@ -90,7 +90,7 @@ class EcologyWatcher:
 
     def _discovered(self, discovery: Discovery) -> None:
         self._discovering = False
-        self._ask_again()  # one such timer at a time: each leads to a discovery, which comes here again
+        self._ask_again.stop()  # it leads to a discovery, which comes here again
         self._tell_left_out(discovery)
         before, self.view.discovery = self.view.discovery.found, discovery
         discovery.found.update(list(self._kept(before, discovery)))
@@ -115,7 +115,7 @@ class EcologyWatcher:
             self._discover_again = False
             self._discover()
         elif discovery.missing:
-            self._ask_again = self.bus.later(ASKED_AGAIN, self._discover)
+            self._ask_again.set()
 
     def _looked(self, link: str) -> None:
         """Tell over which link everything was found, once it was handed on."""
@@ -179,7 +179,7 @@ class EcologyWatcher:
 
     def _happened(self, event: Body) -> None:
         self._events.append({"time": self._clock(), **event})
-        self._flush_soon()
+        self._flush_soon.set()
 
     def _flush(self) -> None:
         components: dict[str, Body | None] = {}
