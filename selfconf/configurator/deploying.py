@@ -260,6 +260,7 @@ def end_deployment(state: State) -> Reaction:
         asked_about=frozenset(),
         repeats={},
         has_yielded=False,
+        lost={component: loss for component, loss in state.lost.items() if not loss.lives_anew},
         news=state.news or state.heeds_others,  # by the next loss others may have let go, which they tell no task
         held={component: held for component, held in state.held.items() if component in wanted},
         unreleased=resting_waves(acting, surplus),

@@ -83,6 +83,8 @@ def _let_go(state: State, component: IRI, loss: Loss) -> Reaction:
 def lose(state: State, component: IRI, loss: Loss) -> Reaction:
     """Turn the lost one off, drop its profile, and search again, with the rest kept or dismantled first."""
     epoch = state.epoch + 1
+    if loss.startable and component in state.held and not state.held[component].acts:
+        loss = replace(loss, broke_early=True)
     without = replace(
         state,
         epoch=epoch,

@@ -132,11 +132,15 @@ def _adopted(state: State, event: Adopted) -> Reaction:
 def _appeared(state: State, event: Appeared) -> Reaction:
     """A component that lives a new life is not the one that was lost, and one that seemed dead was only cut off.
 
-    A site that comes may bring those with it that could not be reached.
+    A site that comes may bring those with it that could not be reached. What has broken before it acted, and was
+    started again, is not tried again before the rest, or a few that break late enough would be tried for ever.
     """
     if state.phase is Phase.IDLE or state.ended:
         return state, ()
     lost = {component: loss for component, loss in state.lost.items() if _stays_lost(component, loss, event.lives)}
+    if state.phase is not Phase.RUNNING and not state.waits_for_news:
+        again = (one for one, loss in state.lost.items() if one not in lost and loss.broke_early)
+        lost |= {one: replace(state.lost[one], lives_anew=True) for one in again}
     owed = event.lives.keys() & state.owed.keys() - set(chain(*state.unreleased))  # those come to rest in their turn
     effects = [ReleaseFrom(component, state.owed[component]) for component in sorted(owed)]
     known = replace(state, lost=lost, news=True)

@@ -127,6 +127,10 @@ class Loss:
     """Whether that is known from the component: else it could not be reached, and may well be able to act."""
     startable: bool = field(default=False, kw_only=True)
     """Whether its process has ended, or is about to, and its site can start it again."""
+    broke_early: bool = field(default=False, kw_only=True)
+    """Whether it broke before it acted, and its site can start it again."""
+    lives_anew: bool = field(default=False, kw_only=True)
+    """Whether it lives again, but broke before it acted: it is tried again after what was not tried."""
 
     @property
     def why(self) -> str:

@@ -372,3 +372,40 @@ def test_what_crashes_again_while_it_is_waited_for_is_started_again_as_often_as_
     history.composed(navigation())
     history.all_answer()
     assert history.state.phase is Phase.RUNNING
+
+
+def broke(cause: Cause = Cause.CRASH) -> History:
+    """The tracker was lost before it acted, and lives again, while odometry is being started in its place."""
+    history = History(TASK).accepted()
+    history.composed(navigation())
+    history.all_answer(Call.WAKE, Call.RESERVE)
+    history.hear(Failed(TRACKER, "1", cause, "it broke in started", startable=True))
+    history.composed(navigation(ODOMETRY))
+    history.hear(Appeared({TRACKER: "2"}))
+    return history
+
+
+@pytest.mark.parametrize("cause", [Cause.CRASH, Cause.HUNG])
+def test_what_broke_before_it_acted_is_not_tried_again_before_the_rest_was_tried(cause: Cause) -> None:
+    history = broke(cause)
+    history.all_answer(Call.WAKE, Call.RESERVE)
+    history.hear(Failed(ODOMETRY, "1", cause, "it broke in started", startable=True))
+    assert history.effects[-1] == Compose(
+        history.state.attempt, frozenset({TRACKER, ODOMETRY}), history.state.target
+    ), "two that break in turn would be tried for ever, and a third one never"
+    assert history.composed(REFUSAL) == [Compose(history.state.attempt, frozenset(), history.state.target)]
+
+
+def test_what_broke_before_it_acted_and_lives_again_counts_once_the_task_runs() -> None:
+    history = broke()
+    assert TRACKER in history.state.lost
+    history.all_answer()
+    assert history.state.phase is Phase.RUNNING
+    assert TRACKER not in history.state.lost
+
+
+def test_what_acted_before_it_crashed_counts_as_soon_as_it_lives_again() -> None:
+    history = lost()
+    history.composed(navigation(ODOMETRY))
+    history.hear(Appeared({TRACKER: "2"}))
+    assert TRACKER not in history.state.lost
