@@ -53,6 +53,13 @@ def test_a_certificate_without_a_good_name_names_nobody(monkeypatch: pytest.Monk
     assert "names no principal" in issued().fault((AUTHORITY,))
 
 
+def test_what_is_too_long_for_a_certificate_is_not_looked_at() -> None:
+    pem = issued().pem
+    Certificate.read(pem + b" " * (certificates.LARGEST_PEM - len(pem)))
+    with pytest.raises(PeerError, match="bytes are too many for a certificate"):
+        Certificate.read(pem + b" " * (certificates.LARGEST_PEM + 1 - len(pem)))
+
+
 def test_authorities_of_one_name_are_told_apart() -> None:
     assert AUTHORITY.x509.subject != OTHER.x509.subject
 

@@ -104,6 +104,16 @@ def test_a_request_that_does_not_arrive_in_time_is_not_waited_for(sent: bytes, p
         assert closed(link)
 
 
+def test_a_further_request_of_a_connection_is_waited_for_no_longer_than_the_first(place: tuple[str, int]) -> None:
+    with connected(place) as link:
+        link.sendall(HEAD + b"hello")
+        said = b""
+        while not said.endswith(b"hello"):
+            said += link.recv(1000)
+        link.sendall(HEAD)
+        assert closed(link)
+
+
 def test_a_byte_now_and_then_does_not_help(place: tuple[str, int]) -> None:
     began = time.monotonic()
     with connected(place) as link:
@@ -143,6 +153,20 @@ def test_who_opens_connections_without_an_end_is_served_no_longer_than_the_other
     assert answered(place)
     for link in held:
         link.close()
+
+
+def test_a_connection_too_many_is_closed_at_once_and_those_before_stay(
+    place: tuple[str, int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(connections, "REQUEST_SECONDS", 60.0)
+    held = [connected(place) for _ in range(connections.MOST_CONNECTIONS)]
+    with connected(place) as another:
+        assert closed(another)
+    for link in held:
+        link.sendall(HEAD + b"hello")
+        assert link.recv(1000).startswith(b"HTTP/1.1 200 ")
+        link.close()
+    assert answered(place), "there is room again"
 
 
 def test_that_no_file_is_left_for_a_connection_is_said_once_and_other_faults_as_always(

@@ -179,6 +179,18 @@ def test_a_program_that_crashes_too_often_is_given_up(
     assert live(network, lambda: len(runs(tmp_path)) == 3)
 
 
+def test_a_program_is_started_again_as_often_as_the_most_demanding_of_its_components_says(
+    network: Network, tmp_path: Path, site: Callable[..., Site]
+) -> None:
+    command = python("raise SystemExit(3)")
+    dormant(tmp_path / "here", command, "modest", more="; sc:restarts 0 ")
+    heard = fails(network)
+    site(command, "demanding", more="; sc:restarts 1 ").start(iri("modest"))
+    assert live(network, lambda: len(heard) == 2)
+    assert "; it is started again" in heard[0].detail
+    assert "for the 2. time within 60 s; it is not started again" in heard[1].detail
+
+
 @pytest.mark.parametrize(("code", "hint"), [(0, " before the component lived; does its program call `main`?"), (2, "")])
 def test_a_program_that_wants_to_end_or_cannot_run_is_not_started_again(
     network: Network, tmp_path: Path, site: Callable[..., Site], code: int, hint: str

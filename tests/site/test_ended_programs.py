@@ -59,6 +59,20 @@ def test_a_process_that_does_not_want_to_end_is_killed_with_all_that_it_started(
     assert not any(map(alive, runs(tmp_path)))
 
 
+def test_a_process_that_is_told_to_end_may_come_to_rest_before(
+    network: Network, tmp_path: Path, site: Callable[..., Site]
+) -> None:
+    rests = "import signal, time; "
+    rests += 'signal.signal(signal.SIGTERM, lambda *_: (time.sleep(0.3), open("rests", "w").close(), exit(0))); '
+    made = site(python(rests + NUMBERED))
+    made.start(SLEEPER)
+    assert live(network, lambda: len(runs(tmp_path)) == 1)
+    ended: list[bool] = []
+    made.processes.end(SLEEPER, "", lambda: ended.append(True))
+    assert live(network, lambda: bool(ended), component_program.TERMINATION)
+    assert (tmp_path / "here" / "rests").exists()
+
+
 def test_what_a_process_leaves_behind_is_looked_at_less_and_less_often(
     network: Network, site: Callable[..., Site], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -171,6 +171,21 @@ def test_a_later_process_of_the_number_of_a_group_is_not_taken_for_it(
         later.wait(10)
 
 
+def test_a_group_that_was_empty_once_is_signalled_no_more(
+    groups: list[ProcessGroup], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    group, later = (started(groups, tmp_path, code) for code in ("pass", CHILD + "os._exit(0)"))
+    assert group.wait(10)
+    assert group.gone()
+    assert later.wait(10)
+    child = int((tmp_path / "child").read_text())
+    monkeypatch.setattr(group, "number", later.number)  # which no process has any more, but a group
+    group.kill()
+    assert group.gone()
+    assert alive(child)
+    assert not later.gone()
+
+
 def test_what_ignores_the_variable_is_still_ended_in_the_group(groups: list[ProcessGroup], tmp_path: Path) -> None:
     group = started(groups, tmp_path, CHILD.replace("pause()'])", "pause()'], env={})") + "os._exit(0)")
     assert group.wait(10)

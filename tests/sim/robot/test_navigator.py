@@ -68,6 +68,12 @@ def test_once_arrived_it_stays_arrived(apartment: Apartment, puppet: Puppet) -> 
     drive(navigator, puppet, 40.0)
     again = navigator.update(puppet.message(), NOTHING_HEARD, puppet.odometry(), puppet.time + 1)
     assert again.state == "arrived"
+    puppet.pose = Pose(navigator.goal.x + 2 * navigator.near, navigator.goal.y, navigator.goal.theta)
+    noisy = navigator.update(puppet.message(), NOTHING_HEARD, puppet.odometry(), puppet.time + 2)
+    assert noisy.state == "arrived", "a pose that is a little off sends it nowhere"
+    puppet.pose = Pose(navigator.goal.x + 4 * navigator.near, navigator.goal.y, navigator.goal.theta)
+    moved = navigator.update(puppet.message(), NOTHING_HEARD, puppet.odometry(), puppet.time + 3)
+    assert moved.state == "driving"
 
 
 def test_it_turns_aside_for_what_the_sonars_hear(apartment: Apartment, puppet: Puppet) -> None:

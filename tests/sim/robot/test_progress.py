@@ -15,6 +15,11 @@ def test_a_robot_that_runs_in_circles_is_stuck_in_the_end() -> None:
     assert reasons[252] == "2.0 m are left, and for 25 s that has not become less"
 
 
+def test_a_robot_that_comes_nearer_all_the_time_is_not_stuck_however_long_it_takes() -> None:
+    progress = Progress(patience=3.0, hope=25.0)
+    assert not any(progress.judge(Pose(k / 100, 0.0), 10.0 - k / 100, k / 10) for k in range(900))
+
+
 def test_a_pause_without_poses_is_not_held_against_the_robot() -> None:
     progress = Progress(patience=3.0, hope=25.0)
     assert not progress.judge(Pose(0.0, 0.0), 2.0, 0.0)

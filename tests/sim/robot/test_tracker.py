@@ -78,14 +78,21 @@ def test_one_missed_frame_now_and_then_is_not_a_loss(tracker: Tracker) -> None:
         assert not tracker.lost
 
 
-def test_a_plate_cut_by_the_border_of_the_image_gives_no_pose(tracker: Tracker) -> None:
-    edge = next(pose for pose in (Pose(x, 0.99) for x in np.arange(3.0, 4.0, 0.01)) if touches_border(frame(pose).rgb))
+@pytest.mark.parametrize("colour", [MAGENTA, CYAN], ids=["its front", "its back"])
+def test_a_plate_of_which_the_border_of_the_image_cuts_one_colour_gives_no_pose(
+    tracker: Tracker, colour: tuple[int, int, int]
+) -> None:
+    turned = math.pi if colour == CYAN else 0.0
+    places = (Pose(x, 0.99, turned) for x in np.arange(3.3, 4.0, 0.01))
+    edge = next(pose for pose in places if colours_at_border(frame(pose).rgb))
+    assert colours_at_border(frame(edge).rgb) == {colour}
     assert tracker.look(frame(edge)) is None
 
 
-def touches_border(rgb: np.ndarray) -> bool:
+def colours_at_border(rgb: np.ndarray) -> set[tuple[int, int, int]]:
+    """The colours of the plate that touch the border of an image."""
     border = np.concatenate([rgb[0], rgb[-1], rgb[:, 0], rgb[:, -1]])
-    return bool(np.any(np.all(border == MAGENTA, axis=1)))
+    return {colour for colour in (MAGENTA, CYAN) if np.any(np.all(border == colour, axis=1))}
 
 
 def test_a_magenta_rug_on_the_floor_is_not_her(tracker: Tracker) -> None:
