@@ -30,6 +30,7 @@ from __future__ import annotations
 import logging
 import os
 import random
+import socket
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
@@ -38,8 +39,9 @@ from selfconf import rendezvous, this_machine
 from selfconf.api.sites.announced_site import AnnouncedSite
 from selfconf.api.sites.hub_health import HubHealth
 from selfconf.bus.timer import Timer
-from selfconf.bus.zenoh import GREETING, Hub, Security, ZenohBus, client, cut_connections, router
+from selfconf.bus.zenoh import GREETING, Hub, Security, ZenohBus, client, cut_connections, listens, router
 from selfconf.errors import NetworkError
+from selfconf.protocol.endpoints import endpoint_host, endpoint_port
 from selfconf.protocol.keys import Keys
 from selfconf.this_machine import LocalSite
 
@@ -111,6 +113,19 @@ class Joining:
         """Where a component of this site looks for a hub: where the site is reached first."""
         from_here = [self.bus.from_here] if self.relays else self._from_here()
         return list(dict.fromkeys([*from_here, self.endpoint, *self._usual]))
+
+    @property
+    def reaches_others(self) -> bool:
+        """Whether this site is to connect to sites of other hosts."""
+        return bool(self._elsewhere)
+
+    def unanswered(self) -> list[str]:
+        """The endpoints of other hosts at which nothing answers. It takes time; on any thread."""
+        if not self.relays:
+            return []
+        linked = {(endpoint_host(one), endpoint_port(one)) for one in self.bus.reached}
+        with_port = (one for one in self._elsewhere if endpoint_port(one) is not None)
+        return [one for one in with_port if linked.isdisjoint(_addresses(one)) and not listens(one)]
 
     def namesake(self) -> str:
         """The life of another site of this name, if one is seen in the ecology; empty if not."""
@@ -354,6 +369,15 @@ class Joining:
             self._await([endpoint])
             self._file.write_again()
             return
+
+
+def _addresses(endpoint: str) -> set[tuple[str, int | None]]:
+    """The addresses of an endpoint's host, each with the port; none where there is no such host."""
+    host, port = endpoint_host(endpoint), endpoint_port(endpoint)
+    try:
+        return {(str(place[4][0]), port) for place in socket.getaddrinfo(host or None, port)}
+    except (OSError, UnicodeError):
+        return set()
 
 
 def _reached_at(sites: Sequence[LocalSite]) -> list[str]:

@@ -48,6 +48,8 @@ log = logging.getLogger(__name__)
 
 Beside = Callable[[str, Callable[[], Bus]], AbstractContextManager[None]]
 """Something that lives with a site: it is entered with the ecology, and with what opens a session there as the site."""
+NOT_YET_ANSWERED = 5.0
+"""Seconds after its beginning at which a site says of which other hosts nothing answers."""
 WORK_CHECK = 3.0
 """How often, in seconds, a site looks whether it is to end. It hears at once, but for a signal that comes just as its
 main thread begins to wait: Python handles that no sooner than the thread goes on."""
@@ -190,6 +192,18 @@ class _SiteProgram:
         for other in this_machine.local_sites(self._ecology):
             for path in sorted({*self._joining.served}.intersection(other.served)) if other.site != self._name else ():
                 self._complain(f"site {other.site}, process {other.process}, serves {path} already: end one of the two")
+
+        if self._joining.reaches_others:
+            self._bus.later(NOT_YET_ANSWERED, self._tell_of_unanswered)
+
+    def _tell_of_unanswered(self) -> None:
+        """Have it said once at which endpoints of other hosts nothing answers: that host may only begin later."""
+
+        def tell() -> None:
+            for endpoint in self._joining.unanswered():
+                self._complain(f"nothing answers at {endpoint} yet; this site goes on trying")
+
+        self._work.add(tell)
 
     def _distrusted(self) -> None:
         """End, as the certificate of this site was revoked."""

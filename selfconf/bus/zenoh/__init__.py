@@ -1,7 +1,8 @@
 """The bus over Zenoh: nothing else of selfconf imports Zenoh.
 
 * `client` opens the `ZenohBus` of a program, `router` that of a site with its `Hub`, which keeps the rules and the
-  certificate of a `Security`. `cut_connections` ends what is left of the connections to an endpoint.
+  certificate of a `Security`. `cut_connections` ends what is left of the connections to an endpoint,
+  and `listens` says whether one is taken there.
 * `open_session` opens a bare session; `ANYWHERE_ON_LOOPBACK` is the endpoint of a hub that takes any free port, and
   `with_port` puts a free port in place of port 0; `GREETING` is how long a silent end is waited for;
   `check_endpoint` refuses what is no endpoint, before anything is opened.
@@ -11,7 +12,7 @@
 
 from selfconf.bus.zenoh.bus import ZenohBus
 from selfconf.bus.zenoh.key_inclusion import includes
-from selfconf.bus.zenoh.opening import client, router
+from selfconf.bus.zenoh.opening import client, listens, router
 from selfconf.bus.zenoh.refusals import LONGEST_KEY, RefusalLog, hear_refusals
 from selfconf.bus.zenoh.relay import Hub, cut_connections
 from selfconf.bus.zenoh.session import (
@@ -36,6 +37,7 @@ __all__ = [
     "cut_connections",
     "hear_refusals",
     "includes",
+    "listens",
     "open_session",
     "router",
     "with_port",

@@ -123,6 +123,11 @@ class ZenohBus(Loop):
         """Keep a hub, connected to others, until this bus is closed or relays no more."""
         self._relay, self.endpoint, self.from_here = Relay(hub, self, connect), hub.endpoint, hub.from_here
 
+    @property
+    def reached(self) -> frozenset[str]:
+        """The endpoints, with an address for their host, that the relay of this bus is linked to. On any thread."""
+        return frozenset() if self._relay is None else self._relay.reached
+
     def secure(self, security: Security) -> None:
         """Have other rules, or another certificate, where this bus relays. Raises NetworkError."""
         if self._relay is not None:

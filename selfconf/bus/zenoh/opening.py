@@ -65,14 +65,14 @@ def client(
             if credentials is not None:
                 _raise_if_refused(connect, credentials)
             elif time.monotonic() - began > GREETING:
-                where = ", ".join(filter(_listens, connect)) or ", ".join(connect)
+                where = ", ".join(filter(listens, connect)) or ", ".join(connect)
                 raise NetworkError(
                     f"what listens at {where} stays silent; is the endpoint that of a {wanted}?"
                 ) from None
     return ZenohBus(open_session("client", (), connect, seconds, shared_memory, security, wanted))
 
 
-def _listens(endpoint: str) -> bool:
+def listens(endpoint: str) -> bool:
     """Whether a connection to an endpoint such as `tcp/127.0.0.1:7447` is taken, whatever comes after that."""
     port = endpoint_port(endpoint)
     try:

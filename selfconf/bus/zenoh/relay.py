@@ -156,6 +156,12 @@ class Relay:
         if self._others:
             self._replace()
 
+    @property
+    def reached(self) -> frozenset[str]:
+        """The endpoints, with an address for their host, at the other ends of the uplink. On any thread."""
+        uplink = self._uplink
+        return frozenset() if uplink is None else uplink.reached
+
     def secure(self, security: Security) -> None:
         """Have other rules, or another certificate, at the hub and at the uplink. Raises NetworkError."""
         self._hub.secure(security)
@@ -284,6 +290,13 @@ class _Uplink:
             return
         self.hubs.add(other)
         self.regained |= other in self._lost
+
+    @property
+    def reached(self) -> frozenset[str]:
+        """The endpoints at the other ends of its links; none where it is just replaced."""
+        with suppress(zenoh.ZError):
+            return frozenset(str(link.dst) for session in self._sessions for link in session.info.links())
+        return frozenset()
 
     def close(self) -> None:
         """Leave the network."""

@@ -69,6 +69,10 @@ class Machine:
         return [name for name, site in self.sites.items() if site.bus.endpoint]
 
 
+NOBODY = "tcp/127.0.0.1:1"
+"""An endpoint on which nothing listens."""
+
+
 @pytest.fixture
 def machine() -> Iterator[Machine]:
     """A machine without sites."""
@@ -221,6 +225,25 @@ def test_a_place_is_taken_though_the_hub_of_another_ecology_listens_at_a_usual_p
     finally:
         stranger.close()
     assert machine.until(lambda: all(site.bus.link for site in machine.sites.values()) and machine.united())
+
+
+def test_a_site_knows_at_which_endpoints_of_others_nothing_answers(
+    machine: Machine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    elsewhere = router()
+    try:
+        named = elsewhere.endpoint.replace("127.0.0.1", "localhost")
+        local = "unixsock-stream//tmp/nobody.sock"  # whether anything answers there is not known
+        site = machine.join("a", connect=(NOBODY, named, local))
+        assert machine.until(lambda: bool(site.bus.reached))
+        monkeypatch.setattr(joining, "listens", lambda endpoint: endpoint == named and pytest.fail("it is linked"))
+        assert site.reaches_others
+        assert site.unanswered() == [NOBODY]
+        client_of_it = machine.join("b")
+        assert not client_of_it.reaches_others
+        assert client_of_it.unanswered() == []
+    finally:
+        elsewhere.close()
 
 
 def test_a_site_that_is_told_where_to_listen_or_what_to_connect_to_relays_beside_the_other(machine: Machine) -> None:

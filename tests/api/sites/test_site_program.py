@@ -74,6 +74,13 @@ def test_a_site_does_not_begin_where_reading_would_not_end(home: Home, given: li
 
 
 @pytest.mark.process
+def test_a_site_says_where_nothing_answers_that_it_is_to_connect_to(home: Home) -> None:
+    site = home.selfconf("site", "ads", "--ecology", home.ecology, "--connect", "tcp/127.0.0.1:1")
+    assert home.until(lambda: "nothing answers at tcp/127.0.0.1:1 yet; this site goes on trying" in site.complaints)
+    assert site.end(signal.SIGINT) == 0
+
+
+@pytest.mark.process
 def test_a_site_without_a_name_gets_one_and_leaves_when_it_is_told_to(home: Home) -> None:
     site = home.selfconf("site", "ads", "--ecology", home.ecology)
     assert home.until(lambda: len(list(home.runtime.glob("*.json"))) == 1)
