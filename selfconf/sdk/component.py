@@ -178,7 +178,8 @@ class Component:
         `request` is what is sent along, of what signals can carry, and of 1 MiB at most; `media` is the media type of
         bytes. `answered` is called with what has come of it within that many seconds, above zero, unless the component
         was stopped meanwhile. Nothing happens while not active. Raises ProgrammerError for an operation that is not
-        advertised, for what no request can carry, and for a time that is not above zero.
+        advertised, for what no request can carry, for a time that is not above zero, and for an `answered` that is no
+        function.
         """
         self._attached().needed_operations.call(operation, request, seconds, answered, media)
 
@@ -187,7 +188,10 @@ class Component:
         self._attached().fail(reason)
 
     def every(self, seconds: float, action: Callable[[], None]) -> None:
-        """Call `action` at that interval, in seconds above zero, as long as the component stays active."""
+        """Call `action` at that interval, in seconds above zero, as long as the component stays active.
+
+        Raises ProgrammerError for an interval that is not above zero, and for an action that is no function.
+        """
         self._attached().every(seconds, action)
 
     @property

@@ -112,14 +112,18 @@ class MemoryRun:
         return answered(self._runner.configuration, self._task)
 
     def started(self) -> MemoryRun:
-        """The run once it is running. Raises ProgrammerError, with the refusal, if it does not come to that."""
+        """The run once it is running. Raises ProgrammerError if it does not come to that.
+
+        The error has the refusal, and what was lost on the way.
+        """
         self._ecology.until(lambda: self.running or self.ended)
         self._ecology.advance(REPORT_LAG)
         if not self.running:
             waiting = (event.refusal for event in reversed(self.events) if isinstance(event, TaskWaiting))
             refusal = next(waiting, None) if self.refusal is None else self.refusal
             why = ", without a refusal" if refusal is None else f": {refusal}"
-            raise ProgrammerError(f"the task does not run; it is {self.phase}{why}")
+            lost = "".join(f"\n{one.short} was lost: {loss}" for one, loss in self._runner.losses.items())
+            raise ProgrammerError(f"the task does not run; it is {self.phase}{why}{lost}")
         return self
 
     def stop(self) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 import selfconf as sc
 from selfconf.errors import AuthorError, ProgrammerError
-from selfconf.sdk import Component, Signal
+from selfconf.sdk import Component, Refused, Signal
 from selfconf.testing import Faults, MemoryEcology
 from selfconf.values import ComponentLost, TaskRefused, TaskRunning, TaskWaiting
 
@@ -140,6 +140,20 @@ def test_a_task_that_cannot_run_says_why() -> None:
     assert repr(run.refusal).startswith("<no configuration for :tell")
     (repair,) = run.refusal.repairs
     assert "source" in str(repair)
+
+
+def test_a_task_that_cannot_run_says_why_a_component_that_there_is_was_lost() -> None:
+    class Stopped(Clock):
+        """A clock that declines to act."""
+
+        def started(self) -> None:
+            raise Refused("the battery is empty")
+
+    ecology = MemoryEcology()
+    ecology.add(Stopped("a"), CLOCK.replace("NAME", "a"))
+    ecology.add(Screen(), SCREEN)
+    with pytest.raises(ProgrammerError, match="\na was lost: refused, the battery is empty"):
+        ecology.run(sc.template(TASK)).started()
 
 
 def test_a_task_that_waits_says_why_it_does_not_run() -> None:

@@ -77,14 +77,18 @@ class NeededOperations:
     ) -> None:
         """Ask for an operation; may be called from any thread. The answer is heard on the thread of the code.
 
-        Raises ProgrammerError for an operation that is not advertised, for what no request can carry, and for a time in
-        which no answer can come.
+        Raises ProgrammerError for an operation that is not advertised, for what no request can carry, for a time in
+        which no answer can come, and for what cannot be called with it.
         """
         who = self._profile.component.short
         if name not in self._needed:
             raise ProgrammerError(f"{who} advertises no need of an operation {name!r}")
         if not seconds > 0.0:
             raise ProgrammerError(f"`call` waits for more than zero seconds, not {seconds!r}")
+        if not callable(answered):
+            raise ProgrammerError(
+                f"`answered` is a function that takes the answer, such as self.heard, not {answered!r}"
+            )
         if not self._code.active:
             return
         try:

@@ -20,10 +20,13 @@ class ComponentTimers:
     def every(self, seconds: float, action: Callable[[], None]) -> None:
         """Call `action` at that interval until the component stops or fails; a call that is late is not made up for.
 
-        May be called from any thread. Raises ProgrammerError for an interval that is none.
+        May be called from any thread. Raises ProgrammerError for an interval that is none, and for an action
+        that cannot be called.
         """
         if not 0.0 < seconds < math.inf:
             raise ProgrammerError(f"`every` takes an interval of more than zero seconds, not {seconds!r}")
+        if not callable(action):
+            raise ProgrammerError(f"`every` takes a function to call, such as self.measure, not {action!r}")
         interval = _Interval(self, seconds, action)
         if self.code.on_bus_thread:
             interval.begin()

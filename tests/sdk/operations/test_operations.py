@@ -178,6 +178,8 @@ def test_what_cannot_be_called_or_sent_is_a_mistake_of_the_program() -> None:
     for seconds in (-0.01, 0.0, math.nan):  # such as the rest of a time that is over
         with pytest.raises(ProgrammerError, match="`call` waits for more than zero seconds, not "):
             room.album.ask(seconds=seconds)
+    with pytest.raises(ProgrammerError, match="`answered` is a function that takes the answer"):
+        room.album.call("photo", answered=None)  # as by `answered=self.seen()`
     assert room.photo("all is well")
 
 

@@ -58,6 +58,13 @@ def test_an_interval_that_is_none_is_refused(seconds: float) -> None:
         stage.component.every(seconds, print)
 
 
+def test_what_cannot_be_called_is_refused_where_it_is_handed_over() -> None:
+    stage = Stage()
+    stage.call(apply(1, US))
+    with pytest.raises(ProgrammerError, match="`every` takes a function to call"):
+        stage.component.every(1.0, None)  # as by `self.every(1.0, self.measure())`
+
+
 def test_a_timer_of_a_component_that_is_not_active_is_not_kept() -> None:
     stage = Stage()
     for _ in range(100):
