@@ -149,8 +149,11 @@ class Host:
             runtime.close()
 
     def close(self) -> None:
-        """Turn every component off and leave the ecology, once all are at rest, those that were removed as well."""
-        for runtime in list(self.runtimes):
+        """Turn every component off and leave the ecology, once all are at rest, those that were removed as well.
+
+        Actuators come to rest first.
+        """
+        for runtime in sorted(self.runtimes, key=lambda runtime: not runtime.profile.is_actuator):
             self._let_leave(runtime)
         deadline = self.bus.now() + LEAVING
         self._poll_until(lambda: not self._leaving or self.bus.now() > deadline)

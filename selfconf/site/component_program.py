@@ -119,6 +119,11 @@ class ComponentProgram:
         return None if process is None else process.group
 
     @property
+    def actuates(self) -> bool:
+        """Whether one of the components that share it is an actuator."""
+        return any(profile.is_actuator for profile in self._profiles.values())
+
+    @property
     def running(self) -> bool:
         """Whether there is a process that is not to end."""
         return self._process is not None and self._ending is None

@@ -10,6 +10,7 @@ import logging
 import time
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
+from itertools import groupby
 from pathlib import Path
 
 from selfconf.bus.port import Bus
@@ -21,11 +22,14 @@ from selfconf.protocol.keys import Keys
 from selfconf.site.component_program import ComponentProgram
 from selfconf.site.log_file import LogFile
 from selfconf.site.printed_lines import PrintedLines
+from selfconf.site.process_group import ProcessGroup
 
 log = logging.getLogger(__name__)
 
 ENDING = 3.0
 """How long, in seconds, the processes of a site may take to end before they are killed, when the site ends."""
+ACTUATORS_ALONE = 0.5
+"""For which part of that time at most what feeds the actuators runs on, while these come to rest."""
 Started = tuple[Path, str]
 """What is started once: a command, in the folder of the advertisement that has it."""
 
@@ -113,19 +117,25 @@ class ComponentProcesses:
     def close(self) -> None:
         """End every process, with all that it has started: what runs after `ENDING` seconds, all in all, is killed.
 
-        Unlike everything else here it may be called from any thread: the bus may have one of its own.
+        Those with actuators come to rest first, before what feeds them. Unlike everything else here it may be called
+        from any thread: the bus may have one of its own.
         """
         self._closed = True
-        groups = []
-        for program in list(self._programs.values()):
+        began, groups = time.monotonic(), list[ProcessGroup]()
+        programs = sorted(self._programs.values(), key=lambda program: not program.actuates)
+        for program in programs:
             program.close()
-            group = program.group  # once: that of a process that has just gone is taken away on the thread of the bus
-            if group is not None:
+        for actuates, programs_alike in groupby(programs, key=lambda program: program.actuates):
+            # Each once: that of a process that has just gone is taken away on the thread of the bus.
+            alike = [group for program in programs_alike if (group := program.group) is not None]
+            for group in alike:
                 group.terminate()
-                groups.append(group)
-        deadline = time.monotonic() + ENDING
+            for group in alike if actuates else ():
+                if not group.frozen():
+                    group.wait_for_all(max(0.0, began + ENDING * ACTUATORS_ALONE - time.monotonic()))
+            groups += alike
         for group in groups:
-            if group.frozen() or not group.wait_for_all(max(0.0, deadline - time.monotonic())):
+            if group.frozen() or not group.wait_for_all(max(0.0, began + ENDING - time.monotonic())):
                 group.kill()
                 group.wait(ENDING)
         if self._printed is not None:

@@ -12,6 +12,7 @@ import pytest
 from selfconf.bus.memory import Network
 from selfconf.errors import AuthorError, NetworkError, ProgrammerError, TurtleError
 from selfconf.protocol.keys import Keys
+from selfconf.protocol.messages import Reserve
 from selfconf.sdk import Component, Host
 from selfconf.sdk.host import profile_of
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri, write_advertisements
@@ -224,6 +225,27 @@ def test_a_component_that_is_removed_and_hangs_as_it_is_to_rest_is_noticed(livin
     living.run(host)
     assert until(lambda: living.hangs)
     assert living.hangs == ["urn:c:lamp: `stopped` has not returned within 0.1 s"]
+
+
+def test_actuators_of_a_host_come_to_rest_before_what_feeds_them(living: LivingStage) -> None:
+    at_rest: list[str] = []
+
+    class Resting(Component):
+        def stopped(self) -> None:
+            at_rest.append(self.component)
+
+    host = living.host()
+    camera, motor = (type(name, (Resting,), {"component": f"urn:c:{name}"}) for name in ("camera", "motor"))
+    host.add(living.advertised(camera, ':camera a sc:Component, :Camera ; sc:hasOutput [ sc:name "x" ] .')())
+    host.add(living.advertised(motor, ":motor a sc:Component, :Motor .")())
+    for component in host.runtimes:
+        iri = component.profile.component
+        reserved = living.call(iri, "reserve", Reserve(1, living.supervisor, "task~1"))
+        assert until(lambda answers=reserved: answers)
+        living.apply(iri)
+    host.run(lambda: all(component.active for component in host.runtimes))
+    host.close()
+    assert at_rest == ["urn:c:motor", "urn:c:camera"]
 
 
 def test_one_class_may_stand_for_several_things(tmp_path: Path) -> None:

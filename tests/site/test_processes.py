@@ -204,6 +204,35 @@ def test_what_a_process_leaves_behind_may_end_in_order_as_its_site_ends(
     assert (folder / "rests").exists()
 
 
+RESTS_LATE = """import signal, sys, time
+def rest(*_):
+    time.sleep(0.3 if sys.argv[1] == "motor" else 0.0)  # as long as the motor takes to come to rest
+    open("ended", "a").write(sys.argv[1] + " ")
+    raise SystemExit
+signal.signal(signal.SIGTERM, rest)
+open(sys.argv[1], "w").close()
+time.sleep(60)  # until it is ended
+"""
+
+
+def test_actuators_come_to_rest_before_what_feeds_them_as_their_site_ends(
+    tmp_path: Path, sites: Callable[[Path], Site], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("selfconf.site.processes.ENDING", 20.0)
+    folder = tmp_path / "here"
+    for name in ("camera", "motor", "sonar"):
+        output = "" if name == "motor" else '; sc:hasOutput [ sc:name "out" ; sc:signalType rob:RangeScan ]'
+        dormant(folder, f"{sys.executable} program.py {name}", name, more=output)
+    (folder / "program.py").write_text(RESTS_LATE)
+    site = sites(folder)
+    for name in ("camera", "motor", "sonar"):
+        site.start(iri(name))
+        assert until((folder / name).exists)
+    site.close()
+    first, *others = (folder / "ended").read_text().split()
+    assert (first, set(others)) == ("motor", {"camera", "sonar"})
+
+
 def test_processes_that_do_not_want_to_end_are_waited_for_together(
     network: Network, tmp_path: Path, sites: Callable[[Path], Site], monkeypatch: pytest.MonkeyPatch
 ) -> None:
