@@ -90,6 +90,18 @@ def test_what_two_sites_advertise_is_nobodys_until_somebody_says_whose(door: Doo
     assert vouched(door, "cellar") == {Principal.component(BELL).name}
 
 
+def test_a_site_that_is_revoked_has_no_say_in_whose_a_component_is(door: Door) -> None:
+    advertise(door, "attic", BELL)
+    advertise(door, "cellar", BELL)
+    assert vouched(door, "cellar") == set()
+    reader = door.folder.credentials((PrincipalKind.READER,), "attic").certificate
+    door.folder.admit("lab", reader.read_bytes())  # its name says nothing of the site
+    door.folder.revoke(Principal(PrincipalKind.SITE, "attic"))
+    door.pass_time(2.0)
+    assert {"read.attic", "site.attic"} & door.principals == {"read.attic"}
+    assert vouched(door, "cellar") == {Principal.component(BELL).name}
+
+
 def test_what_a_site_has_advertised_that_is_gone_is_that_of_the_one_that_advertises_it_now(door: Door) -> None:
     advertise(door, "attic", BELL).close()
     advertise(door, "cellar", BELL)

@@ -25,10 +25,17 @@ def folder(tmp_path: Path) -> Authority:
 class Door:
     """A site that knows who has shown a certificate often enough, or lets nobody in."""
 
-    def __init__(self, network: Network, known_after: int = 1, refuses: str = "", beside: tuple[str, ...] = ()) -> None:
+    def __init__(
+        self,
+        network: Network,
+        known_after: int = 1,
+        refuses: str = "",
+        beside: tuple[str, ...] = (),
+        name: str = "home",
+    ) -> None:
         self.shown: list[str] = []
         self._known_after, self._refuses, self._beside = known_after, refuses, beside
-        self._key = Keys("lab").introduce("home")
+        self._key = Keys("lab").introduce(name)
         network.node().serve(self._key, self.answer)
 
     def answer(self, request: Request) -> None:
@@ -71,6 +78,13 @@ def test_who_is_not_let_in_hears_why(folder: Authority) -> None:
     Door(network, refuses="it was revoked")
     with pytest.raises(NetworkError, match=r"read.main is not let in: it was revoked"):
         introduce(network.node(), "lab", folder.credentials((PrincipalKind.READER,)))
+
+
+def test_one_site_that_lets_it_in_is_enough(folder: Authority) -> None:
+    network = Network(1)
+    doors = Door(network, known_after=0), Door(network, refuses="it was revoked", name="attic")
+    introduce(network.node(), "lab", folder.credentials((PrincipalKind.READER,)))
+    assert [len(door.shown) for door in doors] == [1, 1]
 
 
 def test_it_is_not_shown_for_ever(folder: Authority) -> None:

@@ -24,6 +24,7 @@ def test_the_name_of_a_configurator_has_no_hyphen() -> None:
     with pytest.raises(AuthorError, match=r"names no holder of a certificate.*conf.NAME no hyphen"):
         Principal.written("conf.a-b")
     assert Principal.of("site.a-b").name == "a-b"
+    assert Principal.of("read." + "a" * 48).name == "a" * 48
 
 
 @pytest.mark.parametrize(
@@ -59,7 +60,18 @@ def test_a_component_is_written_as_its_iri() -> None:
 
 
 @pytest.mark.parametrize(
-    "text", [":clock", "home:clock", f"comp.{CLOCK}", "https://example.org/my clock", "<:>", "a:", "<>:", "<clock:"]
+    "text",
+    [
+        ":clock",
+        "home:clock",
+        f"comp.{CLOCK}",
+        "https://example.org/my clock",
+        "<:>",
+        "a:",
+        "<>:",
+        "<clock:",
+        "<1x:clock>",
+    ],
 )
 def test_what_is_no_iri_in_full_is_not_taken_for_another_component(text: str) -> None:
     with pytest.raises(

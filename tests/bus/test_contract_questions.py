@@ -24,15 +24,15 @@ def test_a_question_is_answered_with_what_came_along(net: Net, top: str) -> None
     one, two = net.node(), net.node()
 
     def answer(request: Request) -> None:
-        request.reply(f"{top}/@ctl/state", b"got " + request.payload, b"page")
+        request.reply(f"{top}/@ctl/state", b"got " + request.payload + request.attachment, b"page")
         request.finish()
 
     two.serve(f"{top}/@ctl/*", answer)
     net.settle()
     replies: list[Replies] = []
-    one.ask(f"{top}/@ctl/state", b"it", 5.0, replies.append)
+    one.ask(f"{top}/@ctl/state", b"it", 5.0, replies.append, b" and more")
     assert net.until(lambda: bool(replies))
-    assert replies == [Replies((Sample(f"{top}/@ctl/state", b"got it", b"page"),))]
+    assert replies == [Replies((Sample(f"{top}/@ctl/state", b"got it and more", b"page"),))]
 
 
 def test_a_question_reaches_all_queryables_and_ends_with_the_last(net: Net, top: str) -> None:

@@ -115,7 +115,9 @@ def test_a_template_that_cannot_be_read_is_one_sentence(desk: Desk, text: str, w
     ],
 )
 def test_an_argument_that_does_not_fit_is_one_sentence(desk: Desk, arguments: tuple[str, ...], words: str) -> None:
-    assert desk.configure(*arguments).is_one_sentence(words)
+    outcome = desk.configure(*arguments)
+    assert outcome.is_one_sentence(words)
+    assert "bound in" not in outcome.err, "no file says it"
 
 
 def test_files_that_are_not_there_or_are_not_turtle_are_one_sentence(desk: Desk) -> None:

@@ -46,6 +46,24 @@ def test_where_no_thread_can_begin_a_sentence_says_so(
     assert "Traceback" not in said
 
 
+def test_another_fault_of_the_program_is_not_taken_for_a_lack_of_threads(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(_: object) -> int:
+        raise RuntimeError("it is broken")
+
+    monkeypatch.setattr(command("new"), "run", broken)
+    with pytest.raises(RuntimeError, match="it is broken"):
+        main(["new", "component", "clock"])
+
+
+def test_the_version_is_an_answer(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["--version"])
+    assert ended.value.code == 0
+    said = capsys.readouterr()
+    assert said.out.startswith("selfconf ")
+    assert (said.out.count("\n"), said.err) == (1, "")
+
+
 def test_help_lists_every_command(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         main(["--help"])

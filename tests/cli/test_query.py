@@ -37,6 +37,7 @@ def desk(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Desk:
 
 
 def test_the_position_sensors_of_the_paper_are_two(desk: Desk) -> None:
+    assert desk.query(SENSORS).err == ""
     body = desk.query(SENSORS, "--format", "json").body
     found = [row["c"]["value"] for row in body["results"]["bindings"]]
     assert found == [iri("absolute-odometry"), iri("person-tracker")]

@@ -242,6 +242,30 @@ def test_an_end_that_a_task_has_lost_a_life_by_counts_once_and_is_followed_by_a_
     assert live(network, lambda: len(runs(tmp_path)) == 3)
 
 
+def test_a_crash_of_what_has_lived_counts_too(network: Network, tmp_path: Path, site: Callable[..., Site]) -> None:
+    made, heard = site(python(NUMBERED), more="; sc:restarts 0 "), fails(network)
+    made.start(SLEEPER)
+    assert live(network, lambda: len(runs(tmp_path)) == 1)
+    network.node().announce(KEYS.life(SLEEPER, given_life(made)))
+    network.run(lambda: False, 0.1)
+    os.kill(runs(tmp_path)[0], signal.SIGKILL)
+    assert live(network, lambda: bool(heard))
+    assert "for the 1. time within 60 s; it is not started again" in heard[0].detail
+    with pytest.raises(PeerError, match="has ended more than 0 times"):
+        made.start(SLEEPER)
+
+
+def test_python_in_a_command_is_that_of_the_site(
+    network: Network, tmp_path: Path, site: Callable[..., Site], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    code = 'import sys; open("python", "w").write(sys.prefix)'
+    site(python(code).replace(sys.executable, "python", 1)).start(SLEEPER)
+    told = tmp_path / "here" / "python"
+    assert live(network, lambda: told.exists() and told.read_text() != "")
+    assert told.read_text() == sys.prefix
+
+
 def test_what_has_wanted_to_end_is_started_as_often_as_it_is_asked_for(
     network: Network, tmp_path: Path, site: Callable[..., Site]
 ) -> None:

@@ -50,6 +50,7 @@ def test_a_group_has_a_session_of_its_own(groups: list[ProcessGroup], tmp_path: 
     assert os.getsid(group.number) == os.getpgid(group.number) == group.number != os.getsid(0)
     assert group.code() is None
     assert not group.gone()
+    assert not group.wait(0.01)
 
 
 def test_with_a_program_ends_what_it_has_started(groups: list[ProcessGroup], tmp_path: Path) -> None:

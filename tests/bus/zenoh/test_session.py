@@ -28,6 +28,11 @@ def test_an_endpoint_with_a_port_stays_as_it_is() -> None:
     assert with_port("tcp/192.0.2.1:7447") == "tcp/192.0.2.1:7447"
 
 
+def test_no_port_is_looked_for_at_the_address_of_another_host() -> None:
+    with pytest.raises(NetworkError, match=r"cannot listen on tcp/192\.0\.2\.1:0: .*assign"):
+        with_port("tcp/192.0.2.1:0")
+
+
 @pytest.mark.parametrize("name", ["so?", "mine;yours", "caf\udce9"])
 def test_a_folder_of_keys_that_zenoh_cannot_be_told_is_named(name: str, tmp_path: Path) -> None:
     folder = Authority.init(tmp_path / name).path
