@@ -27,6 +27,7 @@ from selfconf.atomic_write import write_atomically
 from selfconf.bus.credentials import Credentials
 from selfconf.errors import AuthorError, reason
 from selfconf.model.immutable import replace
+from selfconf.model.wording import as_typed
 
 DAYS = 7.0
 """For how many days a certificate is good unless told otherwise."""
@@ -68,7 +69,8 @@ class Authority(KeysFolder):
     def issue(self, principal: Principal, out: Path, hosts: Sequence[str] = (), days: float = DAYS) -> Certificate:
         """Issue a certificate with a new key into a folder of its own. Raises AuthorError."""
         if out.exists() and (not out.is_dir() or any(out.iterdir())):
-            raise AuthorError(f"{out} exists and is not empty; to renew what is in it: `selfconf keys renew {out}`")
+            renewal = f"`selfconf keys renew {as_typed(out)}`"
+            raise AuthorError(f"{out} exists and is not empty; to renew what is in it: {renewal}")
         self._check_name(principal)
         return self._issued(principal, out, new_key(), hosts, days)
 

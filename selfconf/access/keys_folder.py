@@ -36,6 +36,7 @@ from selfconf.atomic_write import write_atomically
 from selfconf.bus.credentials import Credentials
 from selfconf.errors import AuthorError, PeerError, reason
 from selfconf.files import FileStamp, stamp
+from selfconf.model.wording import as_typed
 
 MAIN = "main"
 """The name of a program that is given the folder of an authority itself."""
@@ -56,7 +57,7 @@ class KeysFolder:
         if not path.is_dir():
             missing = f"there is no folder {path}{'' if path.is_absolute() else ' here'}"
             raise AuthorError(
-                f"{missing}; name that of your keys, or make an authority with `selfconf keys init {path}`"
+                f"{missing}; name that of your keys, or make an authority with `selfconf keys init {as_typed(path)}`"
             )
         check_unwritable(path)
         self.authority = read_certificate(path / f"{AUTHORITY}.pem")

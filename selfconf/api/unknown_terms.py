@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from selfconf import library
 from selfconf.model.term import IRI, Term
+from selfconf.model.wording import as_typed
 from selfconf.rdf import turtle
 from selfconf.rdf.advertisements import Advertisement, LoadedAdvertisement
 from selfconf.rdf.vocabulary import ROB, SC, SH, TYPE
@@ -95,7 +96,7 @@ def _sentence(source: str, terms: list[str]) -> Iterator[str]:
         what = f"the term {terms[0]}" if one else f"the terms {', '.join(terms)}"
         yield (
             f"{source}: no ontology has {what}, so {'it says' if one else 'they say'} nothing;"
-            f" `selfconf validate {source}` shows where"
+            f" `selfconf validate {as_typed(source)}` shows where"
         )
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from selfconf.cli.scaffolds import SCAFFOLDS
 from selfconf.errors import AuthorError, NamespaceError
+from selfconf.model.wording import as_typed
 
 EXAMPLE = """  selfconf new component kitchen-thermometer
   selfconf new template watch-the-temperature
@@ -44,7 +45,7 @@ def run(given: argparse.Namespace) -> int:
     written = scaffold(given.kind, given.name, given.dir, given.namespace)
     for path in written:
         print(path)
-    print(f"next: change them, and type `selfconf validate {written[0]}`", file=sys.stderr)
+    print(f"next: change them, and type `selfconf validate {as_typed(written[0])}`", file=sys.stderr)
     return 0
 
 
@@ -54,7 +55,8 @@ def scaffold(kind: str, name: str, folder: Path, namespace: str | None) -> list[
         raise AuthorError(
             f"{name!r} cannot be a name; begin with an ASCII letter, go on with these and digits, a - or _ between them"
         )
-    namespace = namespace or (f"https://example.org/{name}#" if kind == "ontology" else _HOME)
+    if namespace is None:
+        namespace = f"https://example.org/{name}#" if kind == "ontology" else _HOME
     if not _NAMESPACE.fullmatch(namespace):
         raise NamespaceError(namespace)
     words = " ".join(re.split("[-_]", name))

@@ -5,6 +5,7 @@ runs them.
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections.abc import Iterable
 from functools import partial
@@ -103,11 +104,12 @@ def _project_paths(project: Project) -> list[Path]:
 def _ontologies(given: argparse.Namespace, paths: Iterable[str | Path]) -> list[str | Path]:
     """The ontologies that are given, without those that are not there of a project file that is checked itself."""
     ontologies: list[str | Path] = given.ontology
-    project = given.project.path.resolve()
-    checked = any(project.is_relative_to(Path(path).resolve()) for path in paths)
-    if "ontology" not in given.from_project or not checked:
+    if "ontology" not in given.from_project:
         return ontologies
-    return [path for path in ontologies if Path(path).exists()]
+    # Path.resolve raises RuntimeError for a loop of links; that such a path cannot be read is said where it is read.
+    project = Path(os.path.realpath(given.project.path))
+    checked = any(project.is_relative_to(os.path.realpath(path)) for path in paths)
+    return [path for path in ontologies if not checked or Path(path).exists()]
 
 
 def explanation(code: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,7 @@ from selfconf.model.term import IRI, Literal, Term
 
 if TYPE_CHECKING:
     from datetime import datetime
+    from pathlib import PurePath
 
 MANY = 12
 """How many names are listed; the rest become a number."""
@@ -32,6 +34,12 @@ def one_line(text: str, most: int = LONGEST_REMARK) -> str:
     """A remark of a stranger as a part of one line: also the ends of lines and tabs spelt out, and cut to a length."""
     shown = text if len(text) <= most else f"{text[:most]}…"
     return shown if _is_harmless(shown) else _STEERING_OR_BREAKING.sub(_spelt_out, shown)
+
+
+def as_typed(path: str | PurePath) -> str:
+    """A path as an argument of a command that a message tells to type: quoted, and never taken for an option."""
+    text = str(path)
+    return shlex.quote(f"./{text}" if text.startswith("-") else text)
 
 
 def sayable(said: object) -> str:

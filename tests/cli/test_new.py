@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 
 import pytest
@@ -46,13 +47,24 @@ def test_a_component_whose_file_would_hide_a_module_or_be_no_python_is_refused(
 
 
 @pytest.mark.parametrize(
-    "namespace", ["home", "https://example.org/home", "https://a b#", "https://a>#", "https://a/%zz#", "urn:\udcff:"]
+    "namespace",
+    ["home", "https://example.org/home", "", "https://a b#", "https://a>#", "https://a/%zz#", "urn:\udcff:"],
 )
 def test_a_namespace_that_is_no_iri_is_refused(
     namespace: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     outcome = run(capsys, "new", "component", "x", "--dir", str(tmp_path), "--namespace", namespace)
     assert outcome.is_one_sentence(repr(namespace), "it is an absolute IRI that ends with #, / or :")
+
+
+@pytest.mark.parametrize("folder", ["my home", "-home", "it's"])
+def test_what_to_type_next_can_be_typed(
+    folder: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    said = run(capsys, "new", "component", "x", f"--dir={folder}").err
+    command, *arguments = shlex.split(said.split("`")[1])
+    assert (command, run(capsys, *arguments).code) == ("selfconf", 0)
 
 
 def test_a_folder_that_is_not_there_is_made(tmp_path: Path) -> None:

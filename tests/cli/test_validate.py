@@ -68,6 +68,22 @@ def test_a_file_that_cannot_be_read_is_named_on_stderr(folder: Path, capsys: pyt
     assert "nowhere.ttl" in capsys.readouterr().err
 
 
+def test_a_loop_of_links_is_a_file_that_cannot_be_read(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "loop.ttl").symlink_to("loop.ttl")
+    outcome = run(capsys, "validate", "loop.ttl")
+    assert (outcome.code, outcome.err.splitlines()[-1].count("cannot read loop.ttl")) == (2, 1)
+    assert outcome.out.startswith("loop.ttl:1:1: error[SC-S03]: This file cannot be read: Too many levels")
+
+
+def test_in_a_folder_that_is_gone_files_are_validated_by_their_whole_paths(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "gone").mkdir()
+    monkeypatch.chdir(folder / "gone")
+    (folder / "gone").rmdir()
+    assert run(capsys, "validate", str(folder / "good.ttl")).code == 0
+
+
 def test_an_empty_folder_is_said_to_be_empty(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "empty").mkdir()
     assert main(["validate", "empty"]) == 0

@@ -10,6 +10,7 @@ from selfconf.model.term import IRI, XSD_NAMESPACE, BlankNode, Literal
 from selfconf.model.wording import (
     LONGEST_REMARK,
     MANY,
+    as_typed,
     client_text,
     in_english,
     in_full,
@@ -71,3 +72,7 @@ def test_a_client_is_named_by_its_certificate_where_it_has_shown_one() -> None:
 
 def test_a_moment_is_said_in_utc_to_the_second() -> None:
     assert utc_text(datetime(2026, 3, 4, 5, 6, 7, 8, timezone.utc)) == "2026-03-04 05:06:07 UTC"
+
+
+def test_a_path_in_a_command_is_one_argument_and_no_option() -> None:
+    assert [as_typed(path) for path in ("a/b.ttl", "my home", "-x")] == ["a/b.ttl", "'my home'", "./-x"]

@@ -22,6 +22,7 @@ from selfconf.errors import AuthorError
 from selfconf.model.immutable import immutable
 from selfconf.model.moments import parsed_moment
 from selfconf.model.term import IRI, Literal, Term
+from selfconf.model.wording import as_typed
 from selfconf.rdf import turtle
 from selfconf.rdf.turtle import Document
 from selfconf.rdf.vocabulary import PROV, SC
@@ -64,7 +65,7 @@ class PastConfiguration:
 def past_graphs(folder: Path) -> dict[str, bytes]:
     """Every configuration that a folder has, as N-Triples by its name. Raises AuthorError where it holds no history."""
     if not (folder / "CURRENT").is_file():
-        raise AuthorError(f"{folder} holds no history; `selfconf serve --history {folder}` keeps one there")
+        raise AuthorError(f"{folder} holds no history; `selfconf serve --history {as_typed(folder)}` keeps one there")
     trouble: Exception | None = None
     for _ in range(COPIES):
         with tempfile.TemporaryDirectory(prefix="selfconf-history-") as copy:

@@ -24,7 +24,7 @@ from selfconf.model.refusal import Refusal
 from selfconf.model.seconds import DELAY_IN_WORDS, is_delay
 from selfconf.model.term import IRI
 from selfconf.model.wording import sayable
-from selfconf.protocol.keys import checked_name, safe_name, task_identity
+from selfconf.protocol.keys import safe_name, task_identity
 from selfconf.protocol.messages import TaskRecord
 from selfconf.rdf import tasks, turtle
 
@@ -35,7 +35,6 @@ def task_record(task: TaskSpecification, method: Method, how: TaskOptions = AS_U
     Raises AuthorError for a name that is none, and ProgrammerError for a priority or upgrade that is none.
     """
     document = task.document.document
-    name = checked_name(how.name, "a task") if how.name else safe_name(task.iri.short)
     options: dict[str, Any] = {
         "policy": how.policy.value,
         "strategy": method.strategy.value,
@@ -45,7 +44,7 @@ def task_record(task: TaskSpecification, method: Method, how: TaskOptions = AS_U
         "upgrade": checked_upgrade(how.upgrade),
     }
     return TaskRecord(
-        task=task_identity(name, secrets.token_hex(4)),
+        task=task_identity(how.name or safe_name(task.iri.short), secrets.token_hex(4)),
         revision=1,
         priority=task.document.task.priority if how.priority is None else checked_priority(how.priority),
         beginning=time.time(),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from selfconf.api.arguments import checked_choice, checked_text
 from selfconf.configurator import Policy
 from selfconf.model.immutable import immutable
+from selfconf.protocol.keys import checked_name
 
 
 @immutable
@@ -21,13 +22,14 @@ class TaskOptions:
 
     @classmethod
     def of(cls, policy: str, name: str, priority: int | None, upgrade: float | None) -> TaskOptions:
-        """The options that a caller of the library has named. Raises ProgrammerError for a policy or text that is none.
+        """The options that a caller of the library has named.
 
-        The priority and the seconds are checked by `task_record`.
+        Raises ProgrammerError for a policy or text that is none, and AuthorError for a name that is none. The priority
+        and the seconds are checked by `task_record`.
         """
-        return cls(
-            checked_choice(Policy, "policy", policy), checked_text(name, "the name of a task"), priority, upgrade
-        )
+        if checked_text(name, "the name of a task"):
+            checked_name(name, "a task")
+        return cls(checked_choice(Policy, "policy", policy), name, priority, upgrade)
 
 
 AS_USUAL = TaskOptions()

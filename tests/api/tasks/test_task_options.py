@@ -8,7 +8,7 @@ import pytest
 
 from selfconf.api.tasks.task_options import AS_USUAL, TaskOptions
 from selfconf.configurator import Policy
-from selfconf.errors import ProgrammerError
+from selfconf.errors import AuthorError, ProgrammerError
 
 
 def test_what_is_not_said_is_as_usual() -> None:
@@ -20,3 +20,8 @@ def test_what_is_not_said_is_as_usual() -> None:
 def test_a_policy_and_a_name_that_are_none_are_refused(policy: str, name: Any) -> None:
     with pytest.raises(ProgrammerError):
         TaskOptions.of(policy, name, None, None)
+
+
+def test_a_name_that_no_task_can_have_is_refused_before_anything_is_begun_for_it() -> None:
+    with pytest.raises(AuthorError, match="cannot name a task"):
+        TaskOptions.of("repair", "no/name", None, None)
