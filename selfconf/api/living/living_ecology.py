@@ -288,8 +288,8 @@ class LivingEcology(Ecology):
         replies = self._synchronous.ask(self._view.keys.access())
         return self._told(site_accesses(replies, self.discover().found))
 
-    def other_logs(self, known: Collection[str], complain: Callable[[str], None]) -> list[LogSource]:
-        """The logs of the sites that live, but for those that are known; `complain` hears once of each silent one."""
+    def other_logs(self, known: Collection[str], complain: Callable[[str], None]) -> dict[str, LogSource]:
+        """The logs of the sites that live, but for the known ones; `complain` hears once of each that is silent."""
         hint = "that takes keys of conf.NAME" if self._membership.looks_on_only else ""
         return logs_of_other_sites(self._synchronous, self._view.keys, known, complain, hint)
 

@@ -7,8 +7,9 @@ theirs.
 from __future__ import annotations
 
 import heapq
+import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from selfconf.api.arguments import checked_text
@@ -25,7 +26,9 @@ from selfconf.this_machine import local_sites
 FOLLOW_PAUSE = 0.2
 """Seconds after which a log that is followed is looked at again: nothing tells when a file has grown."""
 ASK_AGAIN = 1.0
-"""Seconds after which sites of other machines are asked again."""
+"""Seconds after which sites of other machines are asked again, and logs are looked for that were not there before."""
+FROM_THE_BEGINNING = "0:0"
+"""The position in a log that had no file yet."""
 
 
 class LogReader:
@@ -37,15 +40,18 @@ class LogReader:
         component: str = "",
         pause: float = FOLLOW_PAUSE,
         look_up: Callable[[str], object] | None = None,
+        further: Callable[[], Iterable[LogSource]] = tuple,
     ) -> None:
         """`component` is an IRI, a CURIE or a local name: only the lines of its processes are read; empty: all.
 
         `pause` is for how many seconds one who follows the logs is to wait between two looks. `look_up` raises
-        AuthorError for a component that is not there; None where the ecology cannot be asked.
+        AuthorError for a component that is not there; None where the ecology cannot be asked. `further` finds the logs
+        of sites that have begun since it was asked last.
         """
         self._named, self.pause, self._look_up = component, pause, look_up
         self._component = iri_or_local_name(component)
         self._positions = dict.fromkeys(sources, "")
+        self._further, self._began = further, time.time()
 
     def latest(self, most: int) -> list[LogLine]:
         """The latest lines, so many at most; what is added from then on is what `added` returns."""
@@ -61,8 +67,14 @@ class LogReader:
         return f"nothing that {one_line(self._component)} has printed is kept in the log"
 
     def added(self) -> list[LogLine]:
-        """The lines that were added since the last look."""
-        return self._merged(self._added)
+        """The lines that were added since the last look, also by sites that have begun meanwhile."""
+        found = set(self._further())
+        self._positions |= dict.fromkeys(found, FROM_THE_BEGINNING)
+        return self._merged(lambda source: self._since_it_began(source) if source in found else self._added(source))
+
+    def _since_it_began(self, source: LogSource) -> list[LogLine]:
+        """The lines of a log that was not there before, without those of a former site of its name."""
+        return [line for line in self._added(source) if line.moment is None or line.moment >= self._began]
 
     def _added(self, source: LogSource) -> list[LogLine]:
         lines, more = list[LogLine](), True
@@ -108,35 +120,70 @@ def log_reader(
             ecology = ecology or names_of_log(paths[0])[0]
         if living is None and folder is None and local_sites(ecology):
             living = _joined(ecology, endpoints, keys, stack)
-        sources, asked = _sources(paths, living, folder is not None, complain)
+        logs = _Logs(ecology, folder, living, complain)
+        sources, asks = logs.first(paths)
         look_up = living.component if isinstance(living, LivingEcology) else None
-        yield LogReader(sources, component, ASK_AGAIN if asked else FOLLOW_PAUSE, look_up)
+        yield LogReader(sources, component, ASK_AGAIN if asks else FOLLOW_PAUSE, look_up, logs.further)
 
 
-def _sources(
-    paths: list[Path] | NetworkError,
-    living: LivingEcology | NetworkError | None,
-    are_meant: bool,
-    complain: Callable[[str], None],
-) -> tuple[list[LogSource], bool]:
-    """The logs that can be read, and whether sites are asked for some. Raises NetworkError where there are none.
+class _Logs:
+    """The logs of an ecology that can be read: those that there are, and those that are there later."""
 
-    A site that lives is asked for its log unless that is here. What is here of a site of that name which does not run
-    on this machine was kept by one of before, unless `are_meant` says that these logs, wherever they are from, are.
-    """
-    here = [] if isinstance(paths, NetworkError) else paths
-    others: list[LogSource] = []
-    if isinstance(living, LivingEcology):
-        names = {names_of_log(path)[1] for path in here}
-        known = names if are_meant else names.intersection(site.site for site in local_sites(living.name))
-        others = living.other_logs(known, complain)
-    elif living is not None:
-        if not here:
-            raise living
-        complain(f"only the logs of this machine are shown: {living}")
-    if isinstance(paths, NetworkError) and not others:
-        raise paths
-    return [*map(local_log, here), *others], bool(others)
+    def __init__(
+        self,
+        ecology: str | None,
+        folder: Path | None,
+        living: LivingEcology | NetworkError | None,
+        complain: Callable[[str], None],
+    ) -> None:
+        self._ecology, self._folder, self._living, self._complain = ecology, folder, living, complain
+        self._known_paths: set[Path] = set()
+        self._known_sites: set[str] = set()
+        self._looked = time.monotonic()
+
+    def first(self, paths: list[Path] | NetworkError) -> tuple[list[LogSource], bool]:
+        """The logs that can be read, and whether sites are asked for some. Raises NetworkError where there are none.
+
+        A site that lives is asked for its log unless that is here. What is here of a site of that name which does not
+        run on this machine was kept by one of before, unless a folder was given: these logs, wherever they are from,
+        are meant.
+        """
+        here, living = [] if isinstance(paths, NetworkError) else paths, self._living
+        self._known_paths.update(here)
+        others: list[LogSource] = []
+        if isinstance(living, LivingEcology):
+            names = {names_of_log(path)[1] for path in here}
+            running = {site.site for site in local_sites(living.name)}
+            self._known_sites = names if self._folder is not None else names & running
+            others = self._others(living)
+        elif living is not None:
+            if not here:
+                raise living
+            self._complain(f"only the logs of this machine are shown: {living}")
+        if isinstance(paths, NetworkError) and not others:
+            raise paths
+        return [*map(local_log, here), *others], bool(others)
+
+    def further(self) -> list[LogSource]:
+        """The logs that were not there before; it is looked for them once in a while."""
+        if time.monotonic() < self._looked + ASK_AGAIN:
+            return []
+        self._looked = time.monotonic()
+        paths = _logs_here(self._ecology, self._folder)
+        here = [] if isinstance(paths, NetworkError) else [path for path in paths if path not in self._known_paths]
+        self._known_paths.update(here)
+        self._known_sites.update(names_of_log(path)[1] for path in here)
+        others: list[LogSource] = []
+        if isinstance(self._living, LivingEcology):
+            with suppress(NetworkError):  # this program is cut off for a moment
+                others = self._others(self._living)
+        return [*map(local_log, here), *others]
+
+    def _others(self, living: LivingEcology) -> list[LogSource]:
+        """The logs of the sites that live and were not known before."""
+        found = living.other_logs(self._known_sites, self._complain)
+        self._known_sites.update(found)
+        return list(found.values())
 
 
 def _joined(

@@ -76,8 +76,8 @@ def local_log(path: Path) -> LogSource:
 
 def logs_of_other_sites(
     bus: SynchronousBus, keys: Keys, known: Collection[str], complain: Callable[[str], None], hint: str = ""
-) -> list[LogSource]:
-    """The logs of the sites that live, but for those that are known, as sources that ask the sites.
+) -> dict[str, LogSource]:
+    """The logs of the sites that live, but for those that are known, by site, as sources that ask the sites.
 
     `complain` hears once of each site that does not tell; `hint` is what may be the reason.
     """
@@ -100,4 +100,4 @@ def logs_of_other_sites(
         return LogPart((), question.position)
 
     sites = {*map(owner_of, bus.living(keys.any_site_life()))}
-    return [partial(told, site) for site in sorted(sites - {*known})]
+    return {site: partial(told, site) for site in sorted(sites - {*known})}

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from selfconf.api.living.log_reader import LogReader, log_reader
-from selfconf.api.living.site_logs import local_log
+from selfconf.api.living.site_logs import LogSource, local_log
 from selfconf.errors import AuthorError
 from selfconf.model.log_line import LogLine
 from selfconf.protocol.messages import LogPart, LogQuestion
@@ -44,6 +44,20 @@ def test_what_a_site_tells_in_parts_is_asked_for_until_there_is_no_more() -> Non
     assert reader.latest(9) == []
     assert [line.time for line in reader.added()] == ["1", "2", "3"]
     assert [line.time for line in reader.added()] == ["4"]
+
+
+def test_a_log_that_begins_later_is_followed_from_its_beginning(tmp_path: Path) -> None:
+    first, later = tmp_path / "e@first.log", tmp_path / "e@later.log"
+    first.write_text(said(1, "known"))
+    found: list[list[LogSource]] = [[], [local_log(later)], []]
+    reader = LogReader([local_log(first)], further=lambda: found.pop(0))
+    assert [line.text for line in reader.latest(9)] == ["known"]
+    assert reader.added() == []
+    later.write_text(said(2, "of a former site").replace("2026", "2006") + said(3, "new").replace("2026", "2126"))
+    assert [line.text for line in reader.added()] == ["new"]
+    with later.open("a") as file:
+        file.write(said(4, "newer"))
+    assert [line.text for line in reader.added()] == ["newer"]
 
 
 def test_where_nothing_is_kept_that_is_said_or_that_there_is_no_such_component() -> None:
@@ -103,6 +117,28 @@ def test_the_site_of_another_machine_is_asked_and_a_silent_one_named(
     with log_reader(far.ecology, [where], keys, None, "", complaints.append) as lines:
         assert [line.text for line in lines.latest(9)] == ["near"]
     assert complaints[-1].startswith("only the logs of this machine are shown: ")
+
+
+@pytest.mark.process
+def test_sites_that_begin_later_are_followed_on_this_machine_and_on_others(
+    far: Home, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("selfconf.api.living.log_reader.ASK_AGAIN", 0.0)
+    monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(tmp_path / "here"))
+    far.site("far", "ads", options=("--log", "kept"))
+    keys = None if far.authority is None else far.authority.path
+    near = tmp_path / "here" / "log" / f"{far.ecology}@near.log"
+    near.parent.mkdir(parents=True)
+    added: list[str] = []
+    with log_reader(far.ecology, [far.endpoint()], keys, None, "", pytest.fail) as lines:
+        assert lines.latest(9) == []
+        far.site("further", "ads", options=("--log", "kept"))
+        (far.folder / "kept").mkdir(exist_ok=True)
+        later = said(1, "further away").replace("2026", "2126")
+        (far.folder / "kept" / f"{far.ecology}@further.log").write_text(later)
+        near.write_text(later.replace("further away", "near"))
+        far.until(lambda: bool(added.extend(line.text for line in lines.added())) or len(added) > 1)
+    assert sorted(added) == ["further away", "near"]
 
 
 @pytest.mark.process

@@ -90,7 +90,7 @@ def test_the_sites_that_live_are_asked_but_those_that_are_known_and_a_silent_one
     for name, payload in (("attic", encode(part)), ("cellar", b"no log"), ("here", encode(part))):
         site(name, payload)
     bus = SynchronousBus(network.node())
-    attic, cellar = logs_of_other_sites(bus, keys, ["here"], complaints.append, "the hint")
+    attic, cellar = logs_of_other_sites(bus, keys, ["here"], complaints.append, "the hint").values()
     assert attic(LogQuestion()) == part
     assert [cellar(LogQuestion(position="3")) for _ in range(2)] == [LogPart((), "3")] * 2
     (complaint,) = complaints
