@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from selfconf.access import Authority, Principal, PrincipalKind, believe
-from selfconf.access.doorkeeper import GONE_AFTER, LOOK_AT_ALL
+from selfconf.access.doorkeeper import GONE_AFTER, INTRODUCE_AGAIN, LOOK_AT_ALL
 from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Request, Urgency
 from selfconf.model.term import IRI
@@ -140,6 +142,28 @@ def test_what_was_refused_is_told_once_and_shown_to_who_asks(door: Door) -> None
     assert [(one.principal, one.number) for one in shown] == [("", 3)]
     rules = [decode(sample.payload, Access) for sample in replies.samples if b"access" in sample.payload[:40]]
     assert tuple(rules) == door.keeper.rules.accesses
+
+
+@pytest.mark.parametrize("answer", ["knows", "does not know", "refuses", "does not finish"])
+def test_a_site_shows_its_certificate_seldom_once_all_others_know_it_and_often_before(door: Door, answer: str) -> None:
+    shown: list[float] = []
+    attic, key = door.network.node(), KEYS.introduce("attic")
+    own = door.folder.credentials((PrincipalKind.SITE,), "attic").certificate.read_text()
+
+    def hear(request: Request) -> None:
+        shown.append(attic.now())
+        if answer == "refuses":
+            request.refuse("it cannot read its keys")
+        else:
+            request.reply(key, encode(Introduction(own, answer != "does not know")))
+        if answer != "does not finish":
+            request.finish()
+
+    attic.serve(key, hear)
+    door.pass_time(INTRODUCE_AGAIN)  # as a site begins it shows it more often
+    shown.clear()
+    door.pass_time(4 * INTRODUCE_AGAIN)
+    assert len(shown) == (0 if answer == "knows" else 4)
 
 
 def test_a_site_that_is_revoked_ends(door: Door) -> None:

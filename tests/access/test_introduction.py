@@ -87,6 +87,13 @@ def test_one_site_that_lets_it_in_is_enough(folder: Authority) -> None:
     assert [len(door.shown) for door in doors] == [1, 1]
 
 
+def test_it_is_shown_until_all_sites_know_it(folder: Authority) -> None:
+    network = Network(1)
+    first, second = Door(network, known_after=0), Door(network, known_after=2, name="attic")
+    introduce(network.node(), "lab", folder.credentials((PrincipalKind.READER,)))
+    assert len(first.shown) == len(second.shown) == 3
+
+
 def test_it_is_not_shown_for_ever(folder: Authority) -> None:
     network = Network(1)
     door = Door(network, known_after=100)

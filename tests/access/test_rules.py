@@ -31,6 +31,7 @@ def rules() -> AccessRules:
 def passes(principal: str, flow: str, message: str, key: str, at_uplinks: bool = False) -> bool:
     """Whether a message passes, as Zenoh has it: by default not, and by inclusion of keys."""
     control: dict[str, Any] = rules().access_control(at_uplinks)
+    assert (control["enabled"], control["default_permission"]) == (True, "deny")
     subjects = {s["id"] for s in control["subjects"] if s.get("cert_common_names", [principal]) == [principal]}
     allowed = {rule for p in control["policies"] if subjects & set(p["subjects"]) for rule in p["rules"]}
     return any(
@@ -74,6 +75,8 @@ def test_all_components_are_asked_at_once_how_they_are_and_for_nothing_else() ->
         ("read.alice", "query", KEYS.advertisements("*"), True),
         ("read.alice", "query", KEYS.call(DRIVE, "state"), False),
         ("read.alice", "query", KEYS.configurator_call("*", "task"), True),
+        ("read.alice", "query", KEYS.configurator_call("*", "status"), True),
+        ("read.alice", "query", KEYS.configurator_call("status", "stop"), False),
         ("read.alice", "query", KEYS.configurator_call("*", "stop"), False),
         ("read.alice", "query", KEYS.log("home"), False),
         ("conf.alice", "query", KEYS.log("home"), True),

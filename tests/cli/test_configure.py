@@ -64,6 +64,7 @@ def test_the_papers_own_algorithm_gives_the_same_configuration(desk: Desk) -> No
 
 @pytest.mark.parametrize("form", ["turtle", "mermaid"])
 def test_a_format_that_does_not_tell_what_would_replace_what_says_so(form: str, desk: Desk) -> None:
+    assert desk.configure(*BOUND, "--format", form).err == ""
     asked = desk.configure(*BOUND, "--format", form, "--what-if")
     assert asked.code == 0
     assert asked.err == f"--what-if is shown as text and as JSON, not by --format {form}\n"

@@ -39,5 +39,11 @@ def test_what_answers_is_taken_down_though_a_configurator_lives_that_does_not(
     assert program.ended() == 0
 
 
+def test_of_a_task_and_a_configurator_one_is_given(capsys: pytest.CaptureFixture[str]) -> None:
+    outcome = run(capsys, "stop", "tidy", "--configurator", "main")
+    assert (outcome.code, outcome.out) == (2, "")
+    assert "a task and --configurator both say what to stop; give one of them" in outcome.err
+
+
 def test_without_an_ecology_it_says_what_to_start(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(capsys, "stop").is_one_sentence("no site runs on this machine", "selfconf site")

@@ -15,7 +15,7 @@ from tests.cli.diagnosed import NASTY
 def test_on_a_terminal_the_place_is_underlined() -> None:
     found = Diagnostic("a.ttl", 12, 3, "SC-A01", "No.", width=3, source="\tx:abc .\x1b[2J")
     plain = re.sub(r"\x1b\[[\d;]*m", "", illustrate(report(["a.ttl"], [found])))
-    assert plain.splitlines()[1:] == ["   12 | \tx:abc .�[2J", "      | \t ^^^"]
+    assert plain.splitlines() == ["a.ttl:12:3: error[SC-A01]: No.", "   12 | \tx:abc .�[2J", "      | \t ^^^"]
 
 
 def test_a_file_cannot_steer_the_terminal() -> None:
