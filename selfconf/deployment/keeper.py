@@ -18,6 +18,7 @@ import hashlib
 import logging
 import time
 from collections.abc import Callable, Collection, Iterable, Set
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from selfconf.bus.port import Bus, Urgency
@@ -67,6 +68,15 @@ def _task_runner() -> type[TaskRunner]:
     return TaskRunner
 
 
+@dataclass(slots=True)
+class _RunHere:
+    """A task that a site runs."""
+
+    runner: TaskRunner
+    version: tuple[bool, int, int]
+    """The version of the record with which it was begun, or that was written of it last."""
+
+
 class Keeper:
     """Keeps the tasks of an ecology at one site, and runs those that it is to run."""
 
@@ -83,9 +93,8 @@ class Keeper:
         self.bus, self.ecology, self.site, self.folder, self._clock = bus, ecology, site, folder, clock
         keys = Keys(ecology)
         self._requests = TaskRequests(bus, request_for)
-        self.runners: dict[str, TaskRunner] = {}
-        self._versions: dict[str, tuple[bool, int, int]] = {}
-        """The version of the record that each runner has begun with, or that was written of it last."""
+        self._run_here: dict[str, _RunHere] = {}
+        """The tasks that this site runs, by their identity."""
         self._beginning: dict[str, str] = {}
         """The site that has begun each task last, as it has said."""
         self._living: dict[str, set[str]] = {site: {""}}
@@ -99,9 +108,14 @@ class Keeper:
         bus.watch(keys.any_site_life(), self._site_changed)
         bus.subscribe(keys.reopens(), lambda _: self._view.reopens(), Urgency.EVENT)
 
+    @property
+    def runners(self) -> dict[str, TaskRunner]:
+        """What runs each task that this site runs, by the identity of the task."""
+        return {task: one.runner for task, one in self._run_here.items()}
+
     def close(self) -> None:
         """Leave the tasks as they run to whichever site is next."""
-        for runner in list(self.runners.values()):
+        for runner in self.runners.values():
             runner.hand_over()
 
     # What the exchange of records has to tell, and asks.
@@ -122,12 +136,12 @@ class Keeper:
         """Leave a task to another site that begins to run it, if that is the one to do so."""
         if not self.folder.records[task].ended:
             self._beginning[task] = site
-        if task in self.runners:
+        if self.runs(task):
             self._assign()
 
     def runs(self, task: str) -> bool:
         """Whether this site runs a task."""
-        return task in self.runners
+        return task in self._run_here
 
     def others(self) -> Collection[str]:
         """The other sites that live."""
@@ -176,28 +190,28 @@ class Keeper:
         """
         linked = bool(self.bus.link)
         for task, record in list(self.folder.records.items()):
-            keeper, runner = keeper_of(task, self._living), self.runners.get(task)
-            if runner is not None and record.ended:
-                runner.stop()
-            elif runner is not None:
-                self._leave_what_is_anothers(runner, record, keeper)
+            keeper, mine = keeper_of(task, self._living), self._run_here.get(task)
+            if mine is not None and record.ended:
+                mine.runner.stop()
+            elif mine is not None:
+                self._leave_what_is_anothers(mine, record, keeper)
             request = self._requests.of(task) if keeper == self.site and not record.ended else None
-            if request is not None and task not in self.runners:
+            if request is not None and not self.runs(task):
                 if wait := self._view.unrest() if linked else LINKED_AGAIN:
                     self._assign_later.set(wait)
                 else:
                     self._run(record, request)
 
-    def _leave_what_is_anothers(self, runner: TaskRunner, record: TaskRecord, keeper: str) -> None:
+    def _leave_what_is_anothers(self, mine: _RunHere, record: TaskRecord, keeper: str) -> None:
         """Let go of a task that another site has gone on with, or that the one that is to run it has begun to run.
 
         To that one it is handed over: it may have found before that the components did not listen to it yet.
         """
-        if record.version != self._versions[record.task]:
-            runner.hand_over()
-        elif keeper != self.site and runner.state.phase in (Phase.RUNNING, Phase.REFUSED):
+        if record.version != mine.version:
+            mine.runner.hand_over()
+        elif keeper != self.site and mine.runner.state.phase in (Phase.RUNNING, Phase.REFUSED):
             if self._beginning.get(record.task) == keeper:
-                runner.hand_over()
+                mine.runner.hand_over()
                 self._exchange.hand_to(keeper, record.task)
             else:
                 self._exchange.ask_later((keeper,))  # it may have said so when this site did not hear it
@@ -223,11 +237,10 @@ class Keeper:
 
     def _run(self, record: TaskRecord, request: RunRequest) -> None:
         def ended(_: object) -> None:
-            runner = self.runners.pop(record.task, None)
-            self._versions.pop(record.task, None)
+            mine = self._run_here.pop(record.task, None)
             self.bus.later(KEEPER_AGAIN, self._assign)
-            if runner is not None and runner.trouble is not None:
-                self._requests.leave_alone(record.task, f"{record.task}: {runner.trouble}")
+            if mine is not None and mine.runner.trouble is not None:
+                self._requests.leave_alone(record.task, f"{record.task}: {mine.runner.trouble}")
 
         runner = _task_runner()(
             self.bus,
@@ -242,7 +255,7 @@ class Keeper:
             task=record.task,
             beginning=record.beginning,
         )
-        self.runners[record.task], self._versions[record.task] = runner, record.version
+        self._run_here[record.task] = _RunHere(runner, record.version)
         self._exchange.tell(replace(record, keeper=self.site))
         if record.configuration:
             try:
@@ -258,16 +271,16 @@ class Keeper:
         Of a task that waits nothing runs: the next one begins anew, as it would let act what is not held any more.
         """
         log.info("%s: %s", task, event.act)
-        known = self.folder.records.get(task)  # none if it has ended, and was forgotten meanwhile
-        if known is None or self._versions.get(task) != known.version:
+        known, mine = self.folder.records.get(task), self._run_here.get(task)
+        if known is None or mine is None or mine.version != known.version:  # it has ended, or is another site's by now
             return
-        record = replace(known, lost=self.runners[task].recorded_losses)
+        record = replace(known, lost=mine.runner.recorded_losses)
         if isinstance(event, TaskRunning):
             record = replace(record, epoch=event.epoch, configuration=configuration_record(event.configuration))
         elif isinstance(event, TaskWaiting):
             record = replace(record, configuration={})
         if isinstance(event, TaskRunning) or record != known:
             record = replace(record, revision=known.revision + 1)
-            self._versions[task] = record.version
+            mine.version = record.version
             self._exchange.learn(record)
             self._exchange.tell(record)

@@ -88,25 +88,23 @@ class RetriesWhileRunning(_Retries):
 
     def __init__(self, context: TaskContext, lives: HeldLives) -> None:
         super().__init__(context, lives)
-        self._is_planned = False
+        self._timer = Timer(self._bus, TRY_AGAIN, self._try_again)
         self._tried_at = -math.inf
         """When that was done last, or was to be done."""
 
     def plan(self) -> None:
         """Set the time, if something has raised FAIL and none is set."""
-        if self._is_planned or all(loss.cause is not Cause.FAIL for loss in self._state().lost.values()):
+        if self._timer.is_set or all(loss.cause is not Cause.FAIL for loss in self._state().lost.values()):
             return
         if self._bus.now() - self._tried_at > LONGEST_PAUSE:  # all was well meanwhile
             self._pause = TRY_AGAIN
-        self._is_planned = True
-        self._bus.later(self._pause, self._try_again)
+        self._timer.set(self._pause)
 
     def _try_again(self) -> None:
         """Count what has raised FAIL as able again; it takes the place of nothing before it delivers.
 
         What has not come to rest yet, or cannot be had otherwise, is looked at again after the next pause.
         """
-        self._is_planned = False
         if self._state().phase is not Phase.RUNNING:
             return
         if able := self._failed():

@@ -102,7 +102,12 @@ class Calling:
             else:
                 seen(answer)
 
-        self.bus.ask(self.keys.call(component, "state"), encode(StateOf(self.identity.task)), CALL, answered)
+        self.ask_for_state(component, CALL, answered)
+
+    def ask_for_state(self, component: IRI, seconds: float, answered: Callable[[Replies], None]) -> None:
+        """Ask a component once for its actual state, for which it may take so many seconds."""
+        question = encode(StateOf(self.identity.task))
+        self.bus.ask(self.keys.call(component, "state"), question, seconds, answered)
 
     def call(self, component: IRI, message: CallMessage, last_resort: LastResort | None = None) -> None:
         """Make a call; what has become of it is stepped, as `Answered`.
@@ -239,9 +244,7 @@ class _PendingCall:
 
     def _inspect(self) -> None:
         """A time-out is not an outcome: ask for the actual state, then decide."""
-        question = encode(StateOf(self._calling.identity.task))
-        key = self._calling.keys.call(self._component, "state")
-        self._calling.bus.ask(key, question, PAUSE if self._hasty else CALL, self._seen)
+        self._calling.ask_for_state(self._component, PAUSE if self._hasty else CALL, self._seen)
 
     @property
     def _hasty(self) -> bool:

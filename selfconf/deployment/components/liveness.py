@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 
+from selfconf.bus.timer import Timer
 from selfconf.configurator import Appeared, Failed, Phase
 from selfconf.deployment.components.calls import Calls
 from selfconf.deployment.components.living_sites import LivingSites
@@ -41,6 +42,7 @@ class Liveness:
         self._state, self._step = context.state, context.step
         self._news: dict[str, str] = {}
         """A life of each component that is not followed and has begun to live, by its chunk, until it is fed."""
+        self._feed_soon = Timer(self.bus, NEWS_TOGETHER, self._feed_news)
         self._unseen: set[tuple[str, str]] = set()
         """The lives of a roll-call that the watch has not shown yet, with the component's chunk."""
         self._names: dict[str, IRI] = {}
@@ -96,9 +98,8 @@ class Liveness:
 
     def _note_news(self, chunk: str, life: str) -> None:
         """A component lives that is not followed; thousands may come at once, so they are fed together."""
-        if not self._news:
-            self.bus.later(NEWS_TOGETHER, self._feed_news)
         self._news[chunk] = life
+        self._feed_soon.set()
 
     def _feed_news(self) -> None:
         news, self._news = self._news, {}
