@@ -9,14 +9,12 @@ from collections.abc import Callable
 from selfconf.bus.port import Bus
 from selfconf.model.term import IRI
 from selfconf.model.wording import sayable
-from selfconf.protocol import activation as table
 from selfconf.protocol.activation import Activation, Hold
 from selfconf.protocol.keys import owner_of, task_name
 from selfconf.protocol.messages import CallAnswer, Claim, Verdict
 from selfconf.sdk.component_code import ComponentCode
 from selfconf.sdk.inputs import InputFollower
 from selfconf.sdk.outputs import Outputs
-from selfconf.sdk.runtime.supervision import Supervision
 from selfconf.termination import resident_memory
 
 
@@ -29,14 +27,18 @@ class CallAnswers:
         component: IRI,
         life: str,
         activation: Callable[[], Activation],
+        stopping: Callable[[], bool],
         code: ComponentCode,
         inputs: InputFollower,
         outputs: Outputs,
-        supervision: Supervision,
     ) -> None:
-        """`activation` tells for which tasks the component is held now; its age is counted from here on."""
-        self._bus, self._component, self._life, self._activation = bus, component, life, activation
-        self._code, self._inputs, self._outputs, self._supervision = code, inputs, outputs, supervision
+        """`activation` tells for which tasks the component is held now, and `stopping` whether it comes to rest.
+
+        Its age is counted from here on.
+        """
+        self._bus, self._component, self._life = bus, component, life
+        self._activation, self._stopping = activation, stopping
+        self._code, self._inputs, self._outputs = code, inputs, outputs
         self._began = bus.now()
 
     def answer(
@@ -70,15 +72,13 @@ class CallAnswers:
             outputs=self._inputs.issued,
             callers=self._inputs.callers,
             patience=self._inputs.patience,
-            stopping=self._code.stopping or self._inputs.ending,
+            stopping=self._stopping(),
             shared=verdict is Verdict.BUSY and own is not None and own.active,
         )
 
-    def busy(self, call: Claim) -> CallAnswer:
-        """The answer that another task is in the way: one that holds the component, or one for which it is kept."""
-        activation = self._activation()
-        by = table.in_the_way(activation, call, self._supervision.gone, self._supervision.unseen)
-        claim = by.claim if by is not None else activation.queue.kept
+    def busy(self, call: Claim, by: Hold | None) -> CallAnswer:
+        """The answer that another task is in the way: by that hold, or one for which the component is kept."""
+        claim = by.claim if by is not None else self._activation().queue.kept
         if claim is None:
             return self.answer(Verdict.BUSY, call.task, "it is free, and tells so")
         who = f"the task {task_name(claim.task)} (priority {claim.priority}, configurator {owner_of(claim.supervisor)})"

@@ -12,6 +12,7 @@ from __future__ import annotations
 import logging
 import secrets
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 
 from selfconf.bus.port import Bus, Urgency
@@ -53,6 +54,16 @@ MOST_PENDING = 256
 """How many calls wait for the component's code and its inputs at most; those that come later are refused."""
 LIFE_ENDS = "it is leaving the ecology"
 """What a component says that cannot act any more in this life, but does not refuse to."""
+
+
+@dataclass(slots=True, eq=False)
+class _ApplyCall:
+    """A call to act that is being carried out, and what answers it."""
+
+    message: Apply
+    reply: Reply
+    turn: int | None = None
+    """The turn of the code that it has begun, if it has: what comes of that is none of a start that has followed."""
 
 
 class ComponentRuntime:
@@ -130,10 +141,10 @@ class ComponentRuntime:
             profile.component,
             self.life,
             lambda: self.activation,
+            lambda: self.stopping,
             self.code,
             self.inputs,
             self.outputs,
-            self.supervision,
         )
         self.calls = ControlCalls(bus, keys, profile, self.life, self._answers, self._obey_at_rest)
         self._token = bus.announce(keys.life(profile.component, self.life))  # last: from now on it is called
@@ -143,6 +154,11 @@ class ComponentRuntime:
     def active(self) -> bool:
         """Whether the component acts: unlike `activation` it ends in the thread and the moment of a FAIL."""
         return self.code.active
+
+    @property
+    def stopping(self) -> bool:
+        """Whether the component was turned off, and is not at rest yet: it may still act."""
+        return self.code.stopping or self.inputs.ending
 
     @property
     def closed(self) -> bool:
@@ -235,17 +251,13 @@ class ComponentRuntime:
             gone=self.supervision.gone,
             unseen=self.supervision.unseen,
         )
+        self._become(after, step)
         if verdict is not Verdict.DONE:
-            self._become(after, step)
-            detail = "it has failed" if verdict is Verdict.REFUSED else ""
-            busy = verdict is Verdict.BUSY
-            reply(self._answers.busy(message) if busy else self._answers.answer(verdict, message.task, detail))
+            reply(self._declining(verdict, message))
             self._waiting.ask_to_yield()
             self._waiting.offer()
-            return
-        self._become(after, step)
-        if isinstance(message, Apply):
-            self._apply(message, step, reply)
+        elif isinstance(message, Apply):
+            self._apply(_ApplyCall(message, reply), step)
         elif isinstance(message, Release):
             self._rest_or_act()
             self._grant()
@@ -258,6 +270,13 @@ class ComponentRuntime:
             self._follow_what_is_left(before, message.task)
             reply(self._answers.answer(Verdict.DONE, message.task))
 
+    def _declining(self, verdict: Verdict, message: Reserve | Apply | Release) -> CallAnswer:
+        """The answer to a call that is not obeyed."""
+        if verdict is Verdict.BUSY:
+            by = table.in_the_way(self.activation, message, self.supervision.gone, self.supervision.unseen)
+            return self._answers.busy(message, by)
+        return self._answers.answer(verdict, message.task, "it has failed" if verdict is Verdict.REFUSED else "")
+
     def _follow_what_is_left(self, before: Activation, task: str) -> None:
         """Follow no more what a task that the component acts for has not reserved with it, after it was given up."""
         last, hold = before.hold(task), self.activation.hold(task)
@@ -267,52 +286,55 @@ class ComponentRuntime:
             self.inputs.follow(hold.claim)
             self.needed_operations.follow(hold.claim)
 
-    def _apply(self, message: Apply, step: ActivationStep, reply: Reply) -> None:
+    def _apply(self, call: _ApplyCall, step: ActivationStep) -> None:
         """Have the code start, or take what has changed, and connect the inputs meanwhile."""
-        turn: int | None = None
-
-        def started(trouble: str | None) -> None:
-            if trouble is None and self.activation.hold(message.task) is None:
-                trouble = "it was turned off again"
-            if trouble is None and not self.inputs.settled:  # the inside of a composite has been refused
-                trouble = self._failure
-            if trouble is None:
-                reply(self._answers.answer(Verdict.DONE, message.task))
-                return
-            if self._closed:
-                reply(self._answers.answer(Verdict.OTHER_LIFE, message.task, LIFE_ENDS))
-                return
-            if turn == self.code.turn and self.activation.phase is not ActivationPhase.FAILED:
-                self._begin_for_none(message.task)
-            reply(self._answers.answer(Verdict.REFUSED, message.task, trouble))
-
-        def answer(trouble: str | None) -> None:
-            def settled() -> None:
-                # Once more: what the call has said may have had the inside of a composite begin anew.
-                self.bus.later(SIGNALS_FIRST, lambda: self.inputs.when_settled(partial(started, trouble)))
-
-            self.inputs.when_settled(settled)
-
-        def change(trouble: str | None) -> None:
-            if trouble is None and self.activation.hold(message.task) is not None:
-                self.code.change(message.values, answer)
-            else:
-                answer(trouble)
-
-        if step is ActivationStep.NONE and self._after_start:  # it is still starting, for an earlier call
-            self._after_start.append(change)
-        elif step is ActivationStep.NONE:
-            self.code.change(message.values, answer)
-        else:
+        message = call.message
+        if step is not ActivationStep.NONE:
             self.outputs.forget()
-            self._after_start = [answer]
+            self._after_start = [partial(self._settle, call)]
             self.code.start(message.values, partial(self._started, self._after_start))
-            turn = self.code.turn  # what comes of this start is none of an activation that has followed since
+            call.turn = self.code.turn
             if self.activation.queue:
                 self._waiting.tell("")
+        elif self._after_start:  # it is still starting, for an earlier call
+            self._after_start.append(partial(self._change, call))
+        else:
+            self._change(call, None)
         self.inputs.follow(message)
         self.needed_operations.follow(message)
         self._rest_or_act()  # once what it lost is known to be unfed
+
+    def _change(self, call: _ApplyCall, trouble: str | None) -> None:
+        """Have the code that has started, unless there was trouble, take what has changed."""
+        if trouble is None and self.activation.hold(call.message.task) is not None:
+            self.code.change(call.message.values, partial(self._settle, call))
+        else:
+            self._settle(call, trouble)
+
+    def _settle(self, call: _ApplyCall, trouble: str | None) -> None:
+        """Answer a call once the inputs do as it says."""
+
+        def settled() -> None:
+            # Once more: what the call has said may have had the inside of a composite begin anew.
+            self.bus.later(SIGNALS_FIRST, lambda: self.inputs.when_settled(partial(self._answer, call, trouble)))
+
+        self.inputs.when_settled(settled)
+
+    def _answer(self, call: _ApplyCall, trouble: str | None) -> None:
+        """Answer a call by what has come of it; what was to begin for it and has not does so for no task."""
+        task = call.message.task
+        if trouble is None and self.activation.hold(task) is None:
+            trouble = "it was turned off again"
+        if trouble is None and not self.inputs.settled:  # the inside of a composite has been refused
+            trouble = self._failure
+        if trouble is None:
+            call.reply(self._answers.answer(Verdict.DONE, task))
+        elif self._closed:
+            call.reply(self._answers.answer(Verdict.OTHER_LIFE, task, LIFE_ENDS))
+        else:
+            if call.turn == self.code.turn and self.activation.phase is not ActivationPhase.FAILED:
+                self._begin_for_none(task)
+            call.reply(self._answers.answer(Verdict.REFUSED, task, trouble))
 
     def _begin_for_none(self, task: str) -> None:
         """Act neither for a task whose call to start came to nothing, nor for those that share what has not begun."""
@@ -374,7 +396,7 @@ class ComponentRuntime:
 
     def _when_at_rest(self, action: Callable[[], None]) -> None:
         """Do something once the code that was stopped is at rest; at once if it is."""
-        if self.code.stopping or self.inputs.ending:
+        if self.stopping:
             self._after_stop.append(action)
         else:
             action()
