@@ -109,7 +109,7 @@ class Certificate:
 
     @property
     def principals(self) -> tuple[Principal, ...]:
-        """Its principals: the subject of the certificate, and components of the same process. Raises PeerError."""
+        """The principals of a certificate: its subject, and components of the same process. Raises PeerError."""
         others = (name.removeprefix(_ALSO) for name in self._names(x509.UniformResourceIdentifier) if _ALSO in name)
         return (self.principal, *(Principal.of(name) for name in others))
 
@@ -180,7 +180,7 @@ class Certificate:
         return ""
 
     def untimely(self, now: datetime | None = None) -> str:
-        """That it is not valid yet, or not any more, in such words; empty if it is valid now."""
+        """Words that say that the certificate is not valid yet, or not any more; empty if it is valid now."""
         now = now or _now()
         if now < self.begins:
             return f"is not valid before {utc_text(self.begins)}; is the clock of this host right?"

@@ -15,7 +15,7 @@ from selfconf.model.term import IRI
 from selfconf.protocol.keys import checked_name
 
 FILE = "believed.json"
-"""Its name in a folder of keys."""
+"""The name of the file in a folder of keys."""
 
 
 def believed(folder: Path) -> Mapping[IRI, str]:

@@ -8,7 +8,10 @@ from selfconf.bus.port import Bus, Undo
 
 
 class Timer:
-    """Does something on the thread of a bus some seconds after it is set, however often it is set meanwhile."""
+    """Does something on the thread of a bus some seconds after it is set, however often it is set meanwhile.
+
+    It is set and taken back on that thread alone.
+    """
 
     def __init__(self, bus: Bus, seconds: float, action: Callable[[], None]) -> None:
         """`seconds` is how long it takes where it is set to no other time."""

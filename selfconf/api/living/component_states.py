@@ -23,14 +23,14 @@ class ComponentState(NamedTuple):
     component: IRI
     types: tuple[IRI, ...]
     site: str
-    """Its site; where several have one name, with the life of the site."""
+    """The site of the component; where several have one name, with the life of the site."""
     state: str
     """`alive`, `dormant` or `absent`, as `LivingEcology.state` says it."""
     active: bool = False
     task: str = ""
     """The name of the task that holds it; of several the first in rank."""
     place: str = ""
-    """Its process and host, for people."""
+    """The process and the host of the component, for people."""
     age: float = 0.0
     """For how long it has lived, in seconds."""
     memory: int = 0

@@ -29,7 +29,7 @@ from selfconf.sdk.payloads import UnsayableError
 
 
 class NeededOperations:
-    """Those of one component in one life."""
+    """The operations that one component needs in one life."""
 
     def __init__(
         self,

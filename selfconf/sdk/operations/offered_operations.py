@@ -57,7 +57,7 @@ class _Promise:
 
 
 class OfferedOperations:
-    """Those of one component in one life."""
+    """The operations that one component offers in one life."""
 
     def __init__(
         self,

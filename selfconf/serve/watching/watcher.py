@@ -61,7 +61,7 @@ class EcologyWatcher:
         self._link = self._told_link = ""
         """The link over which was last found what is advertised, and the one over which also what is deployed was."""
         self._ask_again = Timer(bus, ASKED_AGAIN, self._discover)
-        self._discovering = self._discover_again = self._following = False
+        self._discovering = self._discover_again = False
 
     def begin(self) -> None:
         """Look at what there is, and follow it from then on."""
@@ -107,7 +107,7 @@ class EcologyWatcher:
         shown |= {str(component): None for component in gone}
         sites = self._changed_sites(discovery)
         self._hand_on(EcologyChange({**new, **gone}, shown, sites, graphs=graphs))
-        if not self._following:
+        if not self.view.followed:
             self._follow()
         if self._link not in ("", self._told_link):
             self._tasks.look(partial(self._looked, self._link))
@@ -146,7 +146,6 @@ class EcologyWatcher:
 
     def _follow(self) -> None:
         """Follow everything, once; not before the first discovery has ended, as `EcologyView.follow` says."""
-        self._following = True
         self.view.follow(self._life_changed, self._site_changed)
         self.bus.subscribe(self.keys.changed(), lambda _: self._discover())
         self._tasks.follow()
