@@ -58,7 +58,9 @@ from selfconf.search.reduction import (
 
 READINGS = 4_000_000
 """Needs and supports of classes that are read at most, a second or two: each question that arc consistency or matching
-answers reads all of them, and has no other cost."""
+answers reads all of them, and writes down the options anew, and has no other cost."""
+PORTS_PER_OPTION = 2
+"""As how many needs and supports an option counts that is written down."""
 SMALLEST_STEPS = 20_000
 """Steps spent at most on looking for a smaller reason."""
 SMALLEST_OPTIONS = 5_000
@@ -76,7 +78,9 @@ class FeasibilityOracle:
         self.given, self.budget = given, budget
         self.readings = readings or Budget(READINGS)
         """How many needs and supports may still be read to prepare questions, which takes no steps of the other one."""
-        self._size = sum(len(kind.needs) + len(kind.supports) for kind in given.kinds())
+        ports = sum(len(kind.needs) + len(kind.supports) for kind in given.kinds())
+        self._size = ports + PORTS_PER_OPTION * sum(map(len, given.options))
+        """What a question has to read."""
         self.complete = True
         """False once a question was left open: then what remains may be reducible."""
         self.single = False
@@ -148,11 +152,8 @@ def core(oracle: FeasibilityOracle) -> tuple[Constraint, ...]:
     given = oracle.given
     consistent_part = pruned(given)
     wiped_out = [role for role, slots in Counter(given.slots).items() if len(consistent_part.options[role]) < slots]
-    for role in wiped_out:
-        if unmet := never_met(given, role):
-            return unmet
     if wiped_out:
-        return oracle.irreducible(derivation(given, wiped_out[0]))
+        return never_met(given, wiped_out) or oracle.irreducible(derivation(given, wiped_out[0]))
     lack = hall_set(given.slots, given.components())
     if lack is not None:
         together: tuple[Constraint, ...] = (*map(Played, lack.roles), Distinct())
@@ -210,31 +211,34 @@ def smallest_of(oracle: FeasibilityOracle, known: tuple[Constraint, ...]) -> tup
     budget = oracle.budget.part(SMALLEST_STEPS)
     with ClauseSolver(given, guarded=True) as clauses:
         constraint_of = {clauses.guards[one]: one for one in all_of(given) if one in clauses.guards}
+        order = [*constraint_of]
         irreducible = [clauses.guards[one] for one in known]
+        needed = set(irreducible)
         clauses.prefer(clauses.guards.values())
 
         def held(wanted: Collection[int]) -> Collection[int] | Undecided | None:
             """Return the guards of a maximal set of constraints that hold together with those that are wanted."""
             together = set(wanted)
-            for one in (None, *constraint_of):
+            for one in (None, *order):
                 if one in together:
                     continue
-                asked = [guard for guard in constraint_of if guard in together or guard == one]
-                left = set(irreducible).difference(asked)
+                with_it = together if one is None else together | {one}
+                left = needed - with_it
                 if not left:
                     continue
+                asked = [*filter(with_it.__contains__, order)]
                 if len(left) == 1:  # it cannot hold with the others, which may be hard to find out anew
                     asked.append(-left.pop())
                 answer = clauses.solve(asked, budget)
                 if isinstance(answer, Undecided):
                     return answer
                 if answer:
-                    together = {guard for guard in constraint_of if clauses.holds(guard)}
+                    together = set(clauses.holding(order))
                 elif one is None:
                     return None
             return together
 
-        found, proved = smallest_core(irreducible, [*constraint_of], held, budget)
+        found, proved = smallest_core(irreducible, order, held, budget)
         return tuple(constraint_of[guard] for guard in found), proved
 
 
@@ -245,7 +249,7 @@ def _two_may_fail(given: ReducedProblem) -> bool:
     options go; or such a role and a variable of which its options admit no value, or, where it has several slots, no
     value in common, which is not looked at.
     """
-    supported = {need for kind in given.kinds() for need in kind.supports}
+    supported = _supported(given)
     for role, slots in Counter(given.slots).items():
         kinds = [option.kind for option in given.options[role]]
         unmet = Counter(need for kind in kinds for need in kind.needs if need not in supported)
@@ -294,17 +298,24 @@ def _core_by_deletion(oracle: FeasibilityOracle) -> tuple[Constraint, ...]:
         return tuple(one for one in constraints if clauses.guards.get(one) in remaining)
 
 
-def never_met(given: ReducedProblem, role: int) -> tuple[Constraint, ...]:
+def _supported(given: ReducedProblem) -> set[int]:
+    """Return the needs that some class supports."""
+    return {need for kind in given.kinds() for need in kind.supports}
+
+
+def never_met(given: ReducedProblem, roles: Iterable[int]) -> tuple[Constraint, ...]:
     """Return that a role is played, and needs that nothing supports of which each of its candidates has one.
 
-    Without any one of them the others can hold: each is the only one of them that some class has, and this class could
-    play alone. Nothing where a candidate has no such need, or where the role asks for several players.
+    It is the first of some roles of which this is true. Without any one of the constraints the others can hold: each is
+    the only one of them that some class has, and this class could play alone. Nothing where each role has a candidate
+    without such a need, or asks for several players.
     """
-    supported = {need for kind in given.kinds() for need in kind.supports}
-    hopeless = [set(kind.needs) - supported for kind in {option.kind for option in given.options[role]}]
-    if given.slots.count(role) != 1 or not all(hopeless):
-        return ()
-    return (Played(role), *map(Fed, sorted(_hitting_set(hopeless))))
+    supported, asked = _supported(given), Counter(given.slots)
+    for role in roles:
+        hopeless = [set(kind.needs) - supported for kind in {option.kind for option in given.options[role]}]
+        if asked[role] == 1 and all(hopeless):
+            return (Played(role), *map(Fed, sorted(_hitting_set(hopeless))))
+    return ()
 
 
 def _hitting_set(sets: Sequence[Collection[int]]) -> Collection[int]:

@@ -12,10 +12,17 @@ from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.requirement import InputFed
 from selfconf.search import cores
 from selfconf.search.budget import Budget
-from selfconf.search.cores import FeasibilityOracle
+from selfconf.search.cores import FeasibilityOracle, core
 from selfconf.search.explain import refusal
 from selfconf.search.problem import Problem
-from selfconf.search.reduction import LazyReduction, all_of
+from selfconf.search.reduction import (
+    Fed,
+    InterchangeabilityClass,
+    LazyReduction,
+    Played,
+    ReducedProblem,
+    all_of,
+)
 from selfconf.search.strategies import first
 from tests.search.worlds import agreement, component, problem, problems
 
@@ -64,6 +71,33 @@ def test_once_enough_was_read_a_question_stays_open_even_where_no_search_would_b
     assert oracle.feasible(all_of(given_)) is False
     oracle.readings.steps = 0
     assert isinstance(oracle.feasible(all_of(given_)), Undecided)
+
+
+def test_each_option_that_a_question_writes_down_counts_as_read_though_its_class_needs_nothing() -> None:
+    alike = [component(f"c{number:02}") for number in range(40)]
+    given_ = LazyReduction(problem({"a": alike, "b": alike}, counts={"a": (20, 20), "b": (20, 20)})).reduced
+    readings = Budget(1000)
+    FeasibilityOracle(given_, Budget(), readings).feasible(all_of(given_))
+    assert readings.steps is not None
+    assert 1000 - readings.steps >= sum(map(len, given_.options)) == 80
+
+
+def test_all_roles_of_a_chain_that_fails_are_looked_at_in_one_pass(monkeypatch: pytest.MonkeyPatch) -> None:
+    # Of the first role only a component feeds the second one that cannot play itself, so that none after it can.
+    roles = {f"r{k}": [component(f"c{k}", f"i:S{k}", f"o:S{k + 1}")] for k in range(60)}
+    roles["r0"].append(component("spare"))
+    chain = problem({"s": [component("source")], **roles}, "s>r0 " + " ".join(f"r{k}>r{k + 1}" for k in range(59)))
+    oracle = FeasibilityOracle(LazyReduction(chain).reduced, Budget())
+    passes: list[ReducedProblem] = []
+    kinds = ReducedProblem.kinds
+
+    def counted(given_: ReducedProblem) -> list[InterchangeabilityClass]:
+        passes.append(given_)
+        return kinds(given_)
+
+    monkeypatch.setattr(ReducedProblem, "kinds", counted)
+    assert set(core(oracle)) == {Played(2), Fed(0), Fed(1)}
+    assert len(passes) < 30
 
 
 def test_that_roles_outnumber_their_components_is_not_found_out_anew_to_prove_a_reason_smallest() -> None:

@@ -99,6 +99,8 @@ def test_what_is_settled_refutes_what_cannot_be_beside_it() -> None:
         assert -of_second not in (solver.implied(others[:1]) or set())
         assert solver.ask((), Budget())
         assert solver.holds(first)
+        every = [literal for literals in solver.plays for literal in literals]
+        assert solver.holding(every) == [literal for literal in every if solver.holds(literal)]
 
 
 def test_another_thread_ends_a_call_and_the_next_one_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
