@@ -29,7 +29,6 @@ from pyshacl.validator import Validator
 from selfconf.errors import TemplateError
 from selfconf.model.obstacle import NotJudged, ShapeViolated
 from selfconf.model.term import IRI
-from selfconf.model.wording import in_english
 from selfconf.rdf.deadline import ProcessorTimeUp, TimeUp, processor_limit
 from selfconf.rdf.literal_comparison import UNORDERED
 from selfconf.rdf.permitted_fields import DEEPEST_SHAPE
@@ -38,6 +37,7 @@ from selfconf.rdf.rdflib_terms import rdflib_term
 from selfconf.rdf.shacl import MatchTooCostly
 from selfconf.rdf.sparql import fault
 from selfconf.rdf.turtle import Node
+from selfconf.rdf.violation_words import violation_words
 
 Focus = TypeVar("Focus", bound=Node)
 SHAPE_SECONDS = 120.0
@@ -167,7 +167,7 @@ class _Judge:
 
     def _violations(self, node: Node) -> Iterable[ShapeViolated]:
         conforms, results = self._shape.validate(self._executor, self._data, focus=rdflib_term(node))
-        return () if conforms and not results else _details(results)
+        return () if conforms and not results else _details(results, rdflib_term(node))
 
 
 class _Shares:
@@ -210,23 +210,22 @@ class _Shares:
         return wrong
 
 
-def _details(results: Iterable[tuple[str, rdflib.term.Node, Iterable[tuple[Any, Any, Any]]]]) -> list[ShapeViolated]:
+def _details(
+    results: Iterable[tuple[str, rdflib.term.Node, Iterable[tuple[Any, Any, Any]]]], asked: rdflib.term.Node
+) -> list[ShapeViolated]:
     """What a node lacks, sorted: of each property shape, and of each constraint on the node itself, one violation."""
     least: dict[tuple[object, ...], ShapeViolated] = {}
     for _, result, triples in results:
-        said: dict[Any, list[Any]] = {}
+        said: dict[Any, dict[Any, list[Any]]] = {}
         for subject, predicate, value in triples:
-            if subject == result:
-                said.setdefault(predicate, []).append(value[1] if isinstance(value, tuple) else value)
-        path = next(iter(said.get(_SH.resultPath, ())), None)
-        messages = said.get(_SH.resultMessage, ())  # pySHACL hands them on in no order
-        message = in_english((getattr(one, "language", None) or "", str(one)) for one in messages) or "does not conform"
-        message = message.removesuffix(
-            " See details for more information."
-        )  # pySHACL's report has them, an obstacle not
+            placed = value if isinstance(value, tuple) else (None, value)
+            said.setdefault(subject, {}).setdefault(predicate, []).append(placed)
+        own = said.pop(result)
+        path = next((path for _, path in own.get(_SH.resultPath, ())), None)
+        message = violation_words(own, list(said.values()), asked)
         one = ShapeViolated(message, IRI.unchecked(str(path)) if isinstance(path, rdflib.URIRef) else None)
-        constraint = (*said.get(_SH.sourceConstraintComponent, ()), message) if path is None else ()
-        thing = (*said.get(_SH.sourceShape, ()), *constraint)
+        (_, shape), (_, kind) = own[_SH.sourceShape][0], own[_SH.sourceConstraintComponent][0]
+        thing = (shape, kind, message) if path is None else (shape,)
         least[thing] = min(one, least.get(thing, one), key=lambda violation: violation.message)
     return sorted(least.values(), key=lambda violation: violation.message) or [ShapeViolated("does not conform")]
 

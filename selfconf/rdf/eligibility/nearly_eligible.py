@@ -17,11 +17,13 @@ from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import free_values
 from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex, TypeSet
 from selfconf.rdf.eligibility.compiled_roles import left_to_judge
-from selfconf.rdf.eligibility.partitioner import ANOTHER, Advertisements, Partitioner, Tested, TestOutcome
+from selfconf.rdf.eligibility.partitioner import Advertisements, Partitioner, Tested, TestOutcome, another_value
 from selfconf.rdf.eligibility.role_tests import CompiledRole, ParameterTest, PropertyTest
 
 JUDGED = 24
 """How many pySHACL judges at most to find near misses of a role: of those that no test keeps out, and of the others."""
+_NO_VALUE = IRI("urn:selfconf:no-value")
+"""What a role that mentions no free parameter is judged with, once."""
 _component = attrgetter("component")
 
 
@@ -168,7 +170,7 @@ class _RoleExclusions:
             near = _alone(by_value)
             if near:
                 allows = {p: self.partitioner.suitable.of(p, v) for p, v in settled[a].items() if p not in forbidden[a]}
-                if parameter is not None and ANOTHER not in near:
+                if parameter is not None and another_value(parameter) not in near:
                     allows[parameter] = frozenset(near)
                 if all(allows.values()):
                     yield NearMiss(self.role.iri, a.component, next(iter(near.values())), allows)
@@ -191,13 +193,13 @@ class _RoleExclusions:
     def _values(self, parameter: IRI | None, focus: Sequence[Advertisement]) -> list[Term]:
         """The values of a free parameter with which a role is judged; without a parameter it is judged once."""
         if parameter is None:
-            return [ANOTHER]
+            return [_NO_VALUE]
         listed = free_values.enumerated(self.partitioner.document, parameter)
         stated = listed | free_values.seen(
             left_to_judge(self.partitioner.document, self.role), self.role.iri, self.partitioner.judge.visible(focus)
         )
         suitable = sorted(self.partitioner.suitable.of(parameter, frozenset(stated)), key=sort_key)[:JUDGED]
-        return suitable if listed else [*suitable, ANOTHER]
+        return suitable if listed else [another_value(parameter), *suitable]  # the first that is near has the words
 
     def _failed(self, advertisement: Advertisement) -> set[IRI | None]:
         """The property over which a test of the shape has failed, if one has; None stands for the component itself."""

@@ -8,6 +8,7 @@ property of their own.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from itertools import chain
 
 from selfconf.errors import TemplateError
 from selfconf.model.hierarchy import Hierarchy
@@ -125,7 +126,14 @@ class OutputShape:
             elif isinstance(obstacle, NotJudged) and not_judged is not None:
                 not_judged.update(dict.fromkeys(some, obstacle))
         _raise_where_none_is_judged(obstacles)
-        return {*passed} if self._tests.complete or not passed else self._by_pyshacl(passed, seen, not_judged)
+        if self._tests.complete or not passed:
+            return {*passed}
+        wrong = self._by_pyshacl(passed, seen)
+        if len(wrong) == len(passed):
+            _raise_where_none_is_judged([*chain.from_iterable(wrong.values())])
+        if not_judged is not None:
+            not_judged |= {port: one for port, (one, *_) in wrong.items() if isinstance(one, NotJudged)}
+        return {port for port in passed if port not in wrong}
 
     def possible_for(self, output: Output, named: bool) -> bool:
         """Whether an output could conform that states so much, by the name that it has if it is `named`."""
@@ -148,8 +156,10 @@ class OutputShape:
         """What keeps an output from conforming, if anything does. Raises TemplateError where that cannot be judged."""
         (looks,) = seen.alike(self._paths, [output])
         found = self._obstacle(looks)
-        if found is None and not self._tests.complete and not self._by_pyshacl([output], seen):
-            return ShapeViolated("it does not conform")
+        if found is None and not self._tests.complete:
+            wrong = self._by_pyshacl([output], seen).get(output, [])
+            _raise_where_none_is_judged(wrong)
+            return next(iter(wrong), None)
         return found
 
     def _obstacle(self, looks: Looks) -> Obstacle | None:
@@ -159,29 +169,21 @@ class OutputShape:
         # The tests look at the profile of a component, so that is what an output has to look like.
         return next(iter(self._tests.obstacles(Profile(iri, types, tuple(pairs)), self._hierarchy)), None)
 
-    def _by_pyshacl(
-        self, outputs: Sequence[Port], seen: SeenOutputs, not_judged: dict[Port, NotJudged] | None = None
-    ) -> set[Port]:
+    def _by_pyshacl(self, outputs: Sequence[Port], seen: SeenOutputs) -> dict[Port, list[ShapeViolated | NotJudged]]:
+        """What pySHACL finds to keep outputs from conforming; nothing of those that conform."""
         from selfconf.rdf.conformance import violations  # most shapes are compiled in full: pySHACL is not loaded
         from selfconf.rdf.rdflib_terms import to_rdflib
 
         shapes = to_rdflib(self._document.triples())
-        found, reasons = set[Port](), list[object]()
         own: dict[IRI, dict[Port, Node]] = {}
         for port in outputs:
             own.setdefault(port[0], {})[port] = seen.node(port)
+        found: dict[Port, list[ShapeViolated | NotJudged]] = {}
         for component, nodes in own.items():
             # What another component says is not seen, so that no shape judges other components.
             data = to_rdflib(seen.triples(component))
             wrong = violations(data, shapes, _SHAPE, list(nodes.values()), "sc:accepts", "the shape")
-            found |= {port for port, node in nodes.items() if node not in wrong}
-            reasons += [one for some in wrong.values() for one in some]
-            for port, node in nodes.items():
-                for one in wrong.get(node, ()):
-                    if not_judged is not None and isinstance(one, NotJudged):
-                        not_judged[port] = one
-        if not found:
-            _raise_where_none_is_judged(reasons)
+            found |= {port: wrong[node] for port, node in nodes.items() if node in wrong}
         return found
 
 

@@ -61,8 +61,6 @@ if TYPE_CHECKING:
     import rdflib
 
 Advertisements = Mapping[IRI, Advertisement] | Iterable[Advertisement]
-ANOTHER = IRI("urn:selfconf:another-value")
-"""A value that no component has: what it lets pass, any value lets pass."""
 _NOTHING: Mapping[IRI, frozenset[Term]] = {}
 
 
@@ -82,6 +80,11 @@ class TestOutcome:
 
     obstacles: tuple[Obstacle, ...]
     allows: Mapping[IRI, frozenset[Term]]
+
+
+def another_value(parameter: IRI) -> IRI:
+    """A value that no component has: what it lets pass, any value lets pass. Words call it what the parameter is."""
+    return IRI.unchecked(f"urn:selfconf:another-value#{parameter.short}")
 
 
 Passed = tuple[Advertisement, TestOutcome]
@@ -339,7 +342,8 @@ class Partitioner:
         survivors = [advertisement for advertisement, _ in passed]
         allowed: dict[IRI, set[Term]] = {a.component: set() for a in survivors}
         subjects = self.judge.subjects(role, survivors, ecology)
-        others = () if free_values.enumerated(self.document, parameter) else (ANOTHER,)
+        another = another_value(parameter)
+        others = () if free_values.enumerated(self.document, parameter) else (another,)
         for value in (*sorted(values, key=sort_key), *others):
             outside = self.violations(role, survivors, ecology, {parameter: value}, subjects)
             for component in allowed.keys() - outside.keys():
@@ -347,7 +351,7 @@ class Partitioner:
         for advertisement, outcome in passed:
             found = frozenset(allowed[advertisement.component])
             others_allowed = {other: some for other, some in outcome.allows.items() if other != parameter}
-            if ANOTHER not in found:
+            if another not in found:
                 yield EligibleComponent(advertisement.profile, {**others_allowed, parameter: found}, _NOTHING)
             else:
                 yield EligibleComponent(advertisement.profile, others_allowed, {parameter: values - found})

@@ -71,7 +71,7 @@ WANTED: dict[IRI, str] = {
     SH.nodeKind: f"one of {', '.join(sorted(f'sh:{kind.short}' for kind in NODE_KINDS))}",
     SH.property: "a property shape, which has one sh:path",
     SH.pattern: "a regular expression",
-    SH.path: "a property or a path of properties",
+    SH.path: "a property or a path of properties, of which two at least stand in parentheses",
     SH.sparql: "a constraint with a SPARQL query that asks no other machine",
 }
 """What the value of each property has to be, in words."""

@@ -94,7 +94,7 @@ def _misfits(parameter: Parameter, values: Iterable[Term], document: Document) -
     found = _judged(parameter, left, document) if constraints and left else {}
     if SH.message in constraints:
         return found
-    return {value: _worded(value, tests, constraints, document) or _without_names(found[value]) for value in found}
+    return {value: _worded(value, tests, constraints, document) or found[value] for value in found}
 
 
 def suitable(parameter: Parameter, values: frozenset[Term], document: Document) -> frozenset[Term]:
@@ -123,17 +123,6 @@ def _worded(
     return next((NotAmong(values, one).said("it") for one in (*allowed, *required) if value not in one), None)
 
 
-_ITSELF = re.compile(rf"<{_PROBE}:\d+>-><{_PROBE}>")
-_ITS = re.compile(rf"<{_PROBE}:\d+>->")
-_LITERAL = re.compile(r'Literal\("(.*?)"(, (datatype|lang)=[^)]*)?\)')
-
-
-def _without_names(message: str) -> str:
-    """A message of pySHACL without the names under which it was asked, and with literals as people write them."""
-    said = _LITERAL.sub(r'"\1"', _ITS.sub("its ", _ITSELF.sub("it", message)))
-    return said.removesuffix(" See details for more information.").removesuffix(".")
-
-
 def _constraints(parameter: IRI, document: Document) -> dict[IRI, list[Term]]:
     """What a parameter asks of its value: the SHACL parameters that it states, each with its values.
 
@@ -158,7 +147,7 @@ def _judged(parameter: Parameter, values: Iterable[Term], document: Document) ->
     from selfconf.rdf.rdflib_terms import rdflib_term, to_rdflib
 
     probes = {IRI.unchecked(f"{_PROBE}:{number}"): value for number, value in enumerate(values)}
-    probe, probe_shape = IRI(_PROBE), IRI.unchecked(f"{_PROBE}-shape")
+    probe, probe_shape = IRI.unchecked(f"{_PROBE}#it"), IRI.unchecked(f"{_PROBE}-shape")  # whose name words say
     shapes = to_rdflib(document.triples())
     node, path = rdflib.URIRef(probe_shape), rdflib.BNode()
     shapes.add((node, rdflib.URIRef(TYPE), rdflib.URIRef(SH.NodeShape)))

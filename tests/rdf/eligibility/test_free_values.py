@@ -14,7 +14,7 @@ from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.rdf import rdflib_terms
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.eligibility.free_values import Suitable
-from selfconf.rdf.eligibility.partitioner import ANOTHER, Partitioner
+from selfconf.rdf.eligibility.partitioner import Partitioner, another_value
 from selfconf.rdf.tasks import bindings, parameters, templates
 from selfconf.rdf.tasks.templates import TaskDocument
 from selfconf.rdf.turtle import document as turtle
@@ -72,10 +72,11 @@ def test_a_candidate_allows_the_values_with_which_it_is_eligible(
     partition = Partitioner(bindings.complete(task)).partition(ads)
     allowed = {c.profile.component: c.admits[0] if c.admits else -1 for c in partition.candidates[0]}
     domain = partition.variables[0].domain if partition.variables else ()
-    for number, value in enumerate((*domain, ANOTHER)):
+    another = another_value(iri("v"))
+    for number, value in enumerate((*domain, another)):
         (eligible,) = Partitioner(bound(task, value)).partition(ads).candidates
         names = {candidate.profile.component for candidate in eligible}
-        if value == ANOTHER:
+        if value == another:
             assert {component for component, mask in allowed.items() if mask < 0} == names
         else:
             assert {component for component, mask in allowed.items() if mask >> number & 1} == names
