@@ -12,7 +12,7 @@ SEEDS  ?= 20
 # as containers with this variable have it, costs a minute and more.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test thorough test-keys quick nightly foreign mangled faults fuzz check audit package format lint types floors shapes docs-check experiment bench clean
+.PHONY: demo before-commit test thorough test-keys quick nightly foreign mangled faults fuzz check audit package format lint types floors shapes docs-check experiment bench clean
 
 demo: $(VENV)/with-sim
 	$(BIN)/selfconf demo
@@ -129,6 +129,11 @@ $(VENV)/with-dev: $(VENV)/python pyproject.toml requirements.txt
 	$(INSTALL_DEV)-1.txt & one=$$!; $(INSTALL_DEV)-2.txt; other=$$?; wait $$one && exit $$other
 	$(INSTALL) --no-deps --no-build-isolation -e .
 	@touch $@ $(VENV)/with-sim
+
+# What a commit has to pass besides the tests around the change; it takes under a minute, and needs no network.
+before-commit: $(VENV)/with-dev
+	@$(MAKE) --jobs=2 --output-sync=target lint types floors docs-check
+	$(BIN)/python -m pytest -q tests/test_house.py tests/test_mirror.py tests/test_floors.py tests/model/test_immutable.py
 
 lint: $(VENV)/with-dev
 	$(BIN)/ruff format --check .
