@@ -20,7 +20,7 @@ from selfconf.rdf.shacl.patterns import (
     shacl_pattern,
     sparql_expression,
 )
-from selfconf.rdf.shacl.shape_queries import component_parameters, refused_queries
+from selfconf.rdf.shacl.shape_queries import refused_queries
 from selfconf.rdf.shacl.shape_syntax import (
     BESIDES,
     COUNTS,
@@ -31,6 +31,7 @@ from selfconf.rdf.shacl.shape_syntax import (
     ONLY_WITH_A_PATH,
     PATH_FORMS,
     STATED_ONCE,
+    component_parameters,
     misfit,
     of_values,
     said_alone,

@@ -3,8 +3,6 @@
 Beside what keeps a text from being a query at all, three mistakes make one that finds nothing, so that every component
 conforms: a prefix that is not declared as its author believes, a pattern of REGEX or REPLACE that is no regular
 expression, and flags that rdflib passes over. They are looked for where a query has them as constants.
-
-Constraint components that a document brings along (section 6) are predicates of its own that constrain.
 """
 
 from __future__ import annotations
@@ -21,8 +19,6 @@ from selfconf.rdf.sparql import hidden, why_not_asked
 from selfconf.rdf.turtle import Document, Node, Triple
 from selfconf.rdf.vocabulary import OWL, SH
 
-VALIDATORS = (SH.validator, SH.nodeValidator, SH.propertyValidator)
-"""How a constraint component has what says whether a constraint of it holds (SHACL, 6.2.3)."""
 DECLARATION = "a node with one sh:prefix and one sh:namespace, which is an absolute IRI as a text"
 """What the value of sh:declare has to be, in words."""
 _FLAGS = "ims"
@@ -53,26 +49,6 @@ def refused_queries(document: Document, constraint: Node) -> Iterator[tuple[Trip
             reason = why_not_asked(text, prefixes, predicate.short) or _misleading(text, prefixes)
             if reason is not None:
                 yield (constraint, predicate, query), reason
-
-
-def validators(document: Document) -> dict[IRI, list[Term]]:
-    """What holds the queries of the document's own SPARQL-based constraint components, by the predicates of these."""
-    found: dict[IRI, list[Term]] = {}
-    for component in document.instances(SH.ConstraintComponent):
-        holding = [one for predicate in VALIDATORS for one in document.values(component, predicate)]
-        for parameter in document.values(component, SH.parameter):
-            for path in document.values(parameter, SH.path):
-                if isinstance(path, IRI):
-                    found.setdefault(path, []).extend(holding)
-    return found
-
-
-def component_parameters(document: Document) -> frozenset[IRI]:
-    """Return the predicates by which a shape of the document uses one of its own SPARQL-based constraint components.
-
-    Only pySHACL can judge what they say.
-    """
-    return frozenset(validators(document))
 
 
 def _declarations(document: Document, constraint: Term) -> Iterator[Triple]:

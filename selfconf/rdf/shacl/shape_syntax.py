@@ -3,6 +3,8 @@
 Validation (`selfconf.rdf.validation.well_formedness`) asks the shape of shapes, and pySHACL in a trial run, and knows
 the place of what is wrong. Here one pass over the statements of a role finds most of it, without a graph; a test over
 files that are wrong holds the two together.
+
+Constraint components that a document brings along (section 6) are predicates of its own that constrain.
 """
 
 from __future__ import annotations
@@ -13,7 +15,7 @@ from selfconf.model.literal_values import natural_number
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.permitted_fields import LISTS_OF_SHAPES, SHAPE_VALUED
 from selfconf.rdf.shacl.patterns import pattern_fault
-from selfconf.rdf.shacl.shape_queries import refused_queries, validators
+from selfconf.rdf.shacl.shape_queries import refused_queries
 from selfconf.rdf.turtle import Document, Node, Triple
 from selfconf.rdf.vocabulary import FIRST, NIL, SH, XSD
 
@@ -48,6 +50,8 @@ STATED_ONCE = (
     | _terms("qualifiedValueShape")
 )
 """What a shape says once, if it does (SHACL, appendix C): of some that are said twice, pySHACL judges no shape."""
+VALIDATORS = (SH.validator, SH.nodeValidator, SH.propertyValidator)
+"""How a constraint component has what says whether a constraint of it holds (SHACL, 6.2.3)."""
 PATH_FORMS = _terms("inversePath", "zeroOrMorePath", "oneOrMorePath", "zeroOrOnePath")
 """What leads from a path in brackets to the path that it is made of; an alternative leads to a list of paths."""
 DEEPEST_PATH = 50
@@ -88,7 +92,7 @@ def misfit(document: Document, triples: Iterable[Triple], variables: frozenset[T
 
     A variable may stand wherever no list and no constraint has to be: its value is an IRI or a literal.
     """
-    holding = validators(document)
+    holding = _validators(document)
     for triple in triples:
         shape, predicate, value = triple
         for constraint in [value] if predicate == SH.sparql else holding.get(predicate, ()):
@@ -209,3 +213,23 @@ def _paths(document: Document, head: Term, depth: int) -> bool:
         and document.list_fault(head) is None
         and all(is_path(document, member, depth + 1) for member in members)
     )
+
+
+def _validators(document: Document) -> dict[IRI, list[Term]]:
+    """What holds the queries of the document's own SPARQL-based constraint components, by the predicates of these."""
+    found: dict[IRI, list[Term]] = {}
+    for component in document.instances(SH.ConstraintComponent):
+        holding = [one for predicate in VALIDATORS for one in document.values(component, predicate)]
+        for parameter in document.values(component, SH.parameter):
+            for path in document.values(parameter, SH.path):
+                if isinstance(path, IRI):
+                    found.setdefault(path, []).extend(holding)
+    return found
+
+
+def component_parameters(document: Document) -> frozenset[IRI]:
+    """Return the predicates by which a shape of the document uses one of its own SPARQL-based constraint components.
+
+    Only pySHACL can judge what they say.
+    """
+    return frozenset(_validators(document))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from selfconf.model.term import IRI
-from selfconf.rdf.shacl import component_parameters, refused_queries
+from selfconf.rdf.shacl import refused_queries
 from selfconf.rdf.turtle import parse
 from selfconf.rdf.vocabulary import SH
 from tests.lab import PREFIXES, iri
@@ -108,12 +108,3 @@ def test_a_prefix_stands_for_one_namespace() -> None:
     assert refused(said, f'{text}sh:namespace "urn:b:" ] .') == [
         (SH.declare, "The prefix a: stands for <urn:a:> in this query already.")
     ]
-
-
-def test_the_paths_of_the_parameters_of_all_components_are_found() -> None:
-    text = """
-        :One a sh:ConstraintComponent ; sh:parameter [ sh:path :low ] , [ sh:path :high ; sh:optional true ] .
-        :Two a sh:ConstraintComponent ; sh:parameter [ sh:path _:odd ] .
-        :other sh:parameter [ sh:path :nothing ] .
-    """
-    assert component_parameters(parse(PREFIXES + text, "shapes.ttl")) == {iri("low"), iri("high")}

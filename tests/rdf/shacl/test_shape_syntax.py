@@ -7,7 +7,7 @@ import rdflib
 from rdflib import SH as SHACL
 
 from selfconf.model.term import IRI
-from selfconf.rdf.shacl import shapes_behind
+from selfconf.rdf.shacl import component_parameters, shapes_behind
 from selfconf.rdf.shacl.shape_syntax import PATH_FORMS, STATED_ONCE, misfit, unfit
 from selfconf.rdf.turtle import document as turtle
 from selfconf.rdf.turtle import parse
@@ -126,6 +126,15 @@ def test_a_parameter_may_stand_wherever_no_list_has_to_be() -> None:
     document = parse(f"{PREFIXES}:r sh:minCount :n .", "r.ttl")
     assert misfit(document, list(document.triples()), frozenset({iri("n")})) is None
     assert misfit(document, list(document.triples()), frozenset({IRI("urn:other")})) is not None
+
+
+def test_the_paths_of_the_parameters_of_all_components_are_found() -> None:
+    text = """
+        :One a sh:ConstraintComponent ; sh:parameter [ sh:path :low ] , [ sh:path :high ; sh:optional true ] .
+        :Two a sh:ConstraintComponent ; sh:parameter [ sh:path _:odd ] .
+        :other sh:parameter [ sh:path :nothing ] .
+    """
+    assert component_parameters(parse(PREFIXES + text, "shapes.ttl")) == {iri("low"), iri("high")}
 
 
 def test_a_statement_leads_to_its_value_or_to_the_members_of_a_list_of_shapes() -> None:
