@@ -129,6 +129,14 @@ def test_who_is_revoked_is_admitted_no_more_and_gets_no_new_certificate(authorit
         authority.revoke(Principal(READ, "eve"))
 
 
+def test_a_folder_that_is_issued_later_knows_what_was_revoked_before(authority: Authority, tmp_path: Path) -> None:
+    alice = authority.issue(ALICE, tmp_path / "alice")
+    authority.revoke(ALICE)
+    authority.issue(Principal(SITE, "attic"), tmp_path / "attic")
+    with pytest.raises(PeerError, match="was revoked"):
+        KeysFolder(tmp_path / "attic").admit("lab", alice.pem)
+
+
 def test_what_is_revoked_at_once_is_all_revoked(authority: Authority, tmp_path: Path) -> None:
     names = [Principal(READ, f"reader{number}") for number in range(8)]
     for name in names:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import ssl
 from contextlib import suppress
-from datetime import timedelta
+from datetime import datetime, timedelta, timezone
 from pathlib import Path
 
 import pytest
 from cryptography import x509
+from cryptography.hazmat.primitives import hashes, serialization
+from cryptography.x509.oid import NameOID
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -58,6 +60,21 @@ def test_what_is_too_long_for_a_certificate_is_not_looked_at() -> None:
     Certificate.read(pem + b" " * (certificates.LARGEST_PEM - len(pem)))
     with pytest.raises(PeerError, match="bytes are too many for a certificate"):
         Certificate.read(pem + b" " * (certificates.LARGEST_PEM + 1 - len(pem)))
+
+
+@pytest.mark.parametrize("names", [(), ("site.kitchen", "conf.alice")])
+def test_a_certificate_of_no_name_or_of_several_names_nobody(names: tuple[str, ...]) -> None:
+    """Of several another program might take another one."""
+    subject = x509.Name([x509.NameAttribute(NameOID.COMMON_NAME, name) for name in names])
+    now = datetime.now(timezone.utc)
+    begun = x509.CertificateBuilder(AUTHORITY.x509.subject, subject, AUTHORITY_KEY.public_key(), 7)
+    begun = begun.not_valid_before(now).not_valid_after(now + timedelta(days=1))
+    made = begun.sign(AUTHORITY_KEY, hashes.SHA256())
+    certificate = Certificate.read(made.public_bytes(serialization.Encoding.PEM))
+    assert certificate.common_name == ""
+    with pytest.raises(PeerError):
+        _ = certificate.principal
+    assert certificate.fault((AUTHORITY,), now + timedelta(hours=1)).startswith("names no principal")
 
 
 def test_authorities_of_one_name_are_told_apart() -> None:

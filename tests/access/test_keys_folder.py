@@ -67,6 +67,13 @@ def test_a_holder_shows_what_it_was_issued(authority: Authority, tmp_path: Path)
         Authority(tmp_path / "alice")
 
 
+def test_a_holder_that_knows_that_it_is_revoked_shows_nothing(authority: Authority, tmp_path: Path) -> None:
+    authority.issue(ALICE, tmp_path / "alice")
+    authority.revoke(ALICE)
+    with pytest.raises(AuthorError, match=r"the certificate of read\.alice was revoked"):
+        KeysFolder(tmp_path / "alice").credentials((READ,))
+
+
 def test_a_site_admits_whom_its_authority_vouches_for(authority: Authority, tmp_path: Path) -> None:
     authority.issue(Principal(SITE, "attic"), tmp_path / "attic")
     alice = authority.issue(ALICE, tmp_path / "alice")

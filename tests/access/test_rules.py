@@ -98,6 +98,14 @@ def test_each_may_do_what_its_name_says(principal: str, message: str, key: str, 
     assert rules().allow(tried) is allowed
 
 
+def test_the_holder_of_a_certificate_is_known_with_the_components_that_it_is_for() -> None:
+    camera, drive, lamp = map(Principal.component, (CAMERA, DRIVE, LAMP))
+    for known in ((camera,), (drive,), (drive, lamp), (Principal(PrincipalKind.READER, "alice"),)):
+        assert rules().knows(known), known
+    for unknown in ((lamp,), (camera, lamp), (drive, lamp, camera), (Principal(PrincipalKind.READER, "bob"),)):
+        assert not rules().knows(unknown), unknown
+
+
 def test_only_sites_that_are_known_answer_who_shows_a_certificate() -> None:
     """Else anybody who is let in could have each program that starts wait for an answer that never comes."""
     for message in ("declare_queryable", "reply"):

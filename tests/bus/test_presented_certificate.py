@@ -19,6 +19,10 @@ def test_it_is_found_as_it_lies_in_its_file_unless_it_is_withheld(tmp_path: Path
     assert (shown.read_text(), presented(own)) == ("first", shown)
     withhold(own, True)
     assert not shown.exists()
+    opened = len(list(Path("/proc/self/fd").iterdir()))
+    for withheld in (True, False, True):
+        withhold(own, withheld)
+    assert len(list(Path("/proc/self/fd").iterdir())) == opened, "it is looked at each second"
     (tmp_path / "new").write_text("second")
     (tmp_path / "new").replace(own)
     withhold(own, False)

@@ -31,6 +31,7 @@ def test_a_holder_is_issued_shown_renewed_and_revoked(
     assert not shown["authority"]
     assert (certificate["name"], certificate["fault"]) == ("site.attic", "")
     assert "10.0.0.7" in certificate["hosts"]
+    assert run(capsys, "keys", "show", folder).code == 0
     assert run(capsys, "keys", "renew", folder, *keys, "--days", "9").code == 0
     renewed = run(capsys, "keys", "show", folder, "--format", "json").body["certificates"][0]
     assert renewed["ends"] > certificate["ends"]
@@ -38,7 +39,11 @@ def test_a_holder_is_issued_shown_renewed_and_revoked(
     assert "revoked 2 certificates of site.attic" in revoked.out
     assert "copy" in revoked.out
     assert "too" not in revoked.out
-    assert "was revoked" in run(capsys, "keys", "show", str(authority)).out
+    assert run(capsys, "keys", "revoke", "conf.main", *keys).code == 0  # the first that is listed
+    whole = run(capsys, "keys", "show", str(authority))
+    assert whole.code == 0
+    assert "was revoked" in whole.out
+    assert run(capsys, "keys", "show", folder).code == 1
 
 
 def test_what_is_revoked_is_known_in_the_folders_that_were_issued(

@@ -57,8 +57,11 @@ def test_lines_are_shown_while_it_runs_followed_and_shown_after_its_death(
     follower = talking.selfconf("log", "talker", "--follow", "--lines", "0", "--format", "json")
     line = json.loads(follower.line())
     assert (line["text"], line["stream"], line["components"]) == ("goes on", "stdout", [iri("talker")])
-    assert follower.end(signal.SIGINT) == 0
-    assert follower.complaints == ""
+    ended = talking.selfconf("log", "talker", "--follow", "--lines", "0")
+    assert ended.line()
+    for one, number in ((follower, signal.SIGINT), (ended, signal.SIGTERM)):
+        assert one.end(number) == 0
+        assert one.complaints == ""
     for follow in ((), ("--follow",)):
         nobody = run(capsys, "log", "nobody", "--ecology", talking.ecology, *follow)
         assert nobody.is_one_sentence("no component nobody is advertised")

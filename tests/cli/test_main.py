@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import subprocess
 import sys
 import threading
@@ -53,6 +55,17 @@ def test_another_fault_of_the_program_is_not_taken_for_a_lack_of_threads(monkeyp
     monkeypatch.setattr(command("new"), "run", broken)
     with pytest.raises(RuntimeError, match="it is broken"):
         main(["new", "component", "clock"])
+
+
+def test_what_the_system_refuses_is_one_sentence(
+    capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(_: object) -> int:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "clock.ttl")
+
+    monkeypatch.setattr(command("new"), "run", full)
+    assert main(["new", "component", "clock"]) == 2
+    assert capfd.readouterr().err == "selfconf new: clock.ttl: No space left on device\n"
 
 
 def test_the_version_is_an_answer(capsys: pytest.CaptureFixture[str]) -> None:

@@ -16,6 +16,7 @@ from urllib.parse import quote
 import pyoxigraph as ox
 import pytest
 
+from selfconf.cli.main import parser
 from selfconf.rdf.vocabulary import SC
 from tests.cli.command import run
 from tests.cli.processes import Home, Program, component_of
@@ -167,6 +168,18 @@ def test_a_port_that_is_none_is_misuse(capsys: pytest.CaptureFixture[str]) -> No
 @pytest.mark.parametrize("origin", ["*", "null", "yasgui.example", "https://yasgui.example/", "https://a b", "ftp://a"])
 def test_an_origin_that_is_none_is_misuse(capsys: pytest.CaptureFixture[str], origin: str) -> None:
     assert run(capsys, "serve", "--allow-origin", origin).is_one_sentence("is no origin; it takes SCHEME://HOST")
+
+
+@pytest.mark.parametrize(
+    ("typed", "origin"),
+    [
+        ("https://yasgui.example:8443", "https://yasgui.example:8443"),
+        ("http://yasgui.example:443", "http://yasgui.example:443"),
+        ("HTTP://yasgui.example:80", "http://yasgui.example"),
+    ],
+)
+def test_an_origin_is_written_as_browsers_do(typed: str, origin: str) -> None:
+    assert parser(["serve"]).parse_args(["serve", "--allow-origin", typed]).origins == [origin]
 
 
 def test_without_the_extra_it_says_what_to_install(

@@ -152,9 +152,11 @@ def test_a_binding_for_a_parameter_that_there_is_not_is_named_with_the_file(
     project: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (project / "selfconf.toml").write_text(PROJECT + "speed = 3\n")
-    assert configure(capsys).is_one_sentence("no parameter 'speed'", "bound in ../selfconf.toml:5")
+    assert configure(capsys).is_one_sentence("no parameter 'speed'", "(bound in ../selfconf.toml:5)")
     (project / "selfconf.toml").write_text(PROJECT.replace('":Astrid"', "3"))
-    assert configure(capsys).is_one_sentence("3 cannot stand for the parameter 'robot'", "bound in ../selfconf.toml:3")
+    assert configure(capsys).is_one_sentence(
+        "3 cannot stand for the parameter 'robot'", "(bound in ../selfconf.toml:3)"
+    )
 
 
 def test_a_parameter_that_is_bound_for_another_template_is_named_with_that(

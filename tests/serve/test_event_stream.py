@@ -57,13 +57,15 @@ def test_who_was_away_hears_what_was_missed() -> None:
         stream = EventStream()
         for number in range(5):
             stream.put("change", number)
+        stream.put("other", 5)
+        stream.put("change", 6)
         lines = stream.lines(["change"], f"{stream.life}-3")
-        _, *events = await heard(lines, 3)
+        _, *events = await heard(lines, 4)
         assert stream.listeners == 1
         assert isinstance(lines, AsyncGenerator)
         await lines.aclose()
         assert stream.listeners == 0
-        assert [event.split("data: ")[1] for event in events] == ["3\n\n", "4\n\n"]
+        assert [event.split("data: ")[1] for event in events] == ["3\n\n", "4\n\n", "6\n\n"]
 
     asyncio.run(play())
 

@@ -21,6 +21,7 @@ OFFERED = ["application/json", "text/csv", "text/turtle"]
         ("*/*;q=0.1, text/turtle;q=0", ["application/json", "text/csv"]),
         ("text/csv;q=much, text/turtle", ["text/turtle"]),
         ("image/png", []),
+        ("text/csv;q=0.1, text/turtle;q=0.5, text/csv;q=0.9", ["text/csv", "text/turtle"]),
     ],
 )
 def test_the_most_specific_range_weighs(accept: str, chosen: list[str]) -> None:

@@ -27,6 +27,7 @@ def test_a_page_of_an_origin_that_is_named_asks_and_reads_the_answer(app: ASGIAp
     answer = asked_by(app, YASGUI, accept="application/sparql-results+json", sec_fetch_site="cross-site")
     assert answer.json["boolean"] is True
     assert answer.headers["access-control-allow-origin"] == YASGUI
+    assert answer.headers["vary"] == ask(app, "/things").headers["vary"] == "Origin", "what keeps answers is told apart"
     assert "access-control-allow-credentials" not in answer.headers
     assert asked_by(app, YASGUI, accept="image/png").headers["access-control-allow-origin"] == YASGUI
     for path in ("/things", "/things/urn:none", "/search/sparql?query=ASK{}", "/.well-known/wot", "/sparql"):

@@ -337,6 +337,33 @@ def test_what_is_ended_while_it_lives_is_waited_for_by_no_task(
     assert not live(network, lambda: len(runs(tmp_path)) == 2, 0.5)
 
 
+def test_what_is_ended_before_it_lives_is_not_started_again_for_who_has_asked_once(
+    network: Network, tmp_path: Path, site: Callable[..., Site]
+) -> None:
+    made = site(python(NUMBERED))
+    made.start(SLEEPER)
+    assert live(network, lambda: len(runs(tmp_path)) == 1)
+    made.processes.end(SLEEPER, given_life(made))
+    assert live(network, lambda: program(made).group is None)
+    assert not live(network, lambda: len(runs(tmp_path)) == 2, 0.3)
+
+
+def test_what_a_person_has_ended_is_started_at_once_however_often_it_has_crashed(
+    network: Network, tmp_path: Path, site: Callable[..., Site]
+) -> None:
+    made, heard = site(python(NUMBERED)), fails(network)
+    made.start(SLEEPER)
+    for number in (1, 2):
+        assert live(network, lambda number=number: len(runs(tmp_path)) == number)
+        os.kill(runs(tmp_path)[-1], signal.SIGKILL)
+        assert live(network, lambda number=number: len(heard) == number)
+    assert live(network, lambda: len(runs(tmp_path)) == 3)
+    made.processes.end(SLEEPER)
+    assert live(network, lambda: program(made).group is None)
+    made.start(SLEEPER)
+    assert program(made).running
+
+
 def test_what_a_person_has_ended_counts_as_no_crash_though_a_task_has_lost_it_by_that(
     network: Network, tmp_path: Path, site: Callable[..., Site]
 ) -> None:

@@ -99,7 +99,9 @@ def test_what_has_left_the_session_is_ended_too(groups: list[ProcessGroup], tmp_
         assert group.wait(10)
         assert alive(child)
     assert not group.gone()
+    opened = len(list(Path("/proc/self/fd").iterdir()))
     group.terminate()
+    assert len(list(Path("/proc/self/fd").iterdir())) == opened
     assert group.wait(10)
     assert until(lambda: not alive(child))
     assert until(group.gone)

@@ -166,6 +166,29 @@ def test_a_hub_that_is_opened_anew_sees_the_one_that_it_connects_to_again(tmp_pa
         kitchen.close()
 
 
+def test_an_uplink_has_the_rules_and_the_certificate_of_its_hub_and_ends_with_it(tmp_path: Path) -> None:
+    authority = Authority.init(tmp_path / "authority")
+    shown = [Security(authority.credentials((PrincipalKind.SITE,), name)) for name in ("kitchen", "attic")]
+    kitchen = router("tls/127.0.0.1:0", security=shown[0])
+    attic = router("tls/127.0.0.1:0", [kitchen.endpoint], security=shown[1])
+
+    def links() -> set[int]:
+        port = endpoint_port(kitchen.endpoint)
+        assert port is not None
+        return {found.getsockname()[1] for found in sockets_at(port, from_here=True)}
+
+    try:
+        assert until(links, kitchen)
+        before = links()
+        attic.secure(Security(shown[1].credentials))
+        assert until(lambda: links() and not links() & before, attic), "each link is a new one"
+    finally:
+        attic.close()
+        alone = until(lambda: not links(), kitchen)
+        kitchen.close()
+    assert alone
+
+
 @pytest.mark.parametrize("settings", ["#so_rcvbuf=65536", "?prio=1"])
 def test_a_hub_with_settings_of_its_link_listens_on_a_free_port_and_is_closed(settings: str) -> None:
     hub = Hub(f"{ANYWHERE_ON_LOOPBACK}{settings}")

@@ -28,11 +28,6 @@ def test_an_endpoint_with_a_port_stays_as_it_is() -> None:
     assert with_port("tcp/192.0.2.1:7447") == "tcp/192.0.2.1:7447"
 
 
-def test_no_port_is_looked_for_at_the_address_of_another_host() -> None:
-    with pytest.raises(NetworkError, match=r"cannot listen on tcp/192\.0\.2\.1:0: .*assign"):
-        with_port("tcp/192.0.2.1:0")
-
-
 @pytest.mark.parametrize("name", ["so?", "mine;yours", "caf\udce9"])
 def test_a_folder_of_keys_that_zenoh_cannot_be_told_is_named(name: str, tmp_path: Path) -> None:
     folder = Authority.init(tmp_path / name).path
@@ -54,6 +49,16 @@ def test_what_is_no_endpoint_is_told_how_one_is_written(endpoint: str) -> None:
     for way in ({"listen": [endpoint]}, {"connect": [endpoint], "connect_seconds": 60.0}):
         with pytest.raises(NetworkError, match=r"is no endpoint; write it like tcp/127\.0\.0\.1:7447$"):
             open_session("client" if "connect" in way else "router", **way)
+
+
+@pytest.mark.parametrize("mode", ["client", "router"])
+def test_what_has_keys_speaks_to_none_without(mode: str, tmp_path: Path) -> None:
+    shown = Authority.init(tmp_path / "keys").credentials((PrincipalKind.SITE,))
+    way = {"connect" if mode == "client" else "listen": ["tcp/127.0.0.1:7447"]}
+    with pytest.raises(
+        NetworkError, match=r"^tcp/.* is without keys, and keys are given; write tls/127\.0\.0\.1:7447$"
+    ):
+        open_session(mode, **way, security=Security(shown))
 
 
 def test_an_endpoint_may_be_of_any_protocol_that_zenoh_speaks(tmp_path: Path) -> None:

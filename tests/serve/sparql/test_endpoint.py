@@ -43,6 +43,17 @@ def test_solutions_come_in_the_format_that_is_wanted(
 
 
 @pytest.mark.parametrize(
+    ("accept", "media"),
+    [("", "text/turtle"), ("application/n-triples", "application/n-triples"), ("image/png", "text/turtle")],
+)
+def test_the_service_description_comes_in_the_format_that_is_wanted_or_as_turtle(
+    board: Board, dataset: StandingDataset, accept: str, media: str
+) -> None:
+    answer = ask(served(board, dataset), "/sparql", accept=accept)
+    assert (answer.status, answer.media) == (200, media)
+
+
+@pytest.mark.parametrize(
     "media", ["text/turtle", "application/n-triples", "application/rdf+xml", "application/ld+json"]
 )
 def test_triples_come_in_the_format_that_is_wanted(board: Board, dataset: StandingDataset, media: str) -> None:

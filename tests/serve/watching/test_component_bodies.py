@@ -27,7 +27,8 @@ def test_units_of_ports_and_what_is_optional_is_told_and_so_are_operations_and_t
         sc:needsOperation [ sc:name "power" ; sc:response <urn:Power> ; sc:optional true ] ."""
     (good,), _ = advertisements.read_advertisements(text.encode(), "lamp.ttl")
     body = component_body(FoundAdvertisement(good, "site", "lamp.ttl", startable=False), "alive")
-    assert body["label"] == "lamp"
+    assert (body["name"], body["label"], body["types"]) == ("a", "lamp", ["<urn:Lamp>"])
+    assert (body["site"], body["source"], body["state"]) == ("site", "lamp.ttl", "alive")
     assert body["inputs"] == [
         {"name": "level", "signals": ["<urn:Level>"], "unit": "<http://qudt.org/vocab/unit/LUX>", "optional": True}
     ]
