@@ -170,7 +170,9 @@ class CallAnswer:
     stopping: bool = False
     """Whether the code of the component was asked to stop, and is not at rest yet: it may still act."""
     shared: bool = False
-    """Whether a component that is busy acts for the task that calls as well, as it has before."""
+    """Whether a component that is busy acts for the task that calls as well, as it has before.
+
+    In the answer to `state`: whether it acts for that task and for others as well."""
 
 
 @immutable
@@ -229,6 +231,8 @@ class End:
     component: IRI
     life: Label = ""
     """The life that is meant; empty: whichever the site has started, as a person has it ended: that is no crash."""
+    task: Label = ""
+    """The identity of the task whose release it has not obeyed; empty if it is to end whatever it does."""
 
 
 @immutable

@@ -9,17 +9,19 @@ from __future__ import annotations
 import logging
 import secrets
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import NamedTuple
 
 from selfconf.bus.answering import answering
-from selfconf.bus.port import Bus, Request, Urgency
+from selfconf.bus.own_answers import own_answers
+from selfconf.bus.port import Bus, Replies, Request, Urgency
 from selfconf.errors import PeerError
 from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
 from selfconf.model.wording import sayable
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys, checked_name
-from selfconf.protocol.messages import End, Known, LogQuestion, Page, Wake
+from selfconf.protocol.messages import CallAnswer, End, Known, LogQuestion, Page, StateOf, Wake
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.turtle import ntriples
 from selfconf.site.kept_log import MOST_LOG_LINES, log_part
@@ -42,6 +44,9 @@ FILE_CHECK_SHARE = 0.02
 """Which part of the time may be spent on that: where there are very many files, they are looked at less often."""
 FILE_CHECK_PAUSE = 5.0
 """Seconds from one look to the next at most: to read many files that have changed takes longer than to look at them."""
+
+SEEN_AT_REST = 0.3
+"""Seconds that a component may take to say that it has let go of a task, before its process is ended for that."""
 
 MOST_REASON = 1000
 """How many characters are sent of why a component cannot act."""
@@ -207,14 +212,42 @@ class Site:
             return False
 
     def _end(self, request: Request) -> None:
-        """End the process of a component, and reply once it is gone."""
+        """End the process of a component, and reply once it is gone.
 
+        For a task whose release it has not obeyed it is not ended where the task alone could not reach it: where it has
+        let go of the task since, or acts for others as well.
+        """
+        try:
+            end = decode(request.payload, End)
+        except PeerError as error:
+            request.refuse(str(error))
+            request.finish()
+            return
+        if end.task:
+            state, question = self.keys.call(end.component, "state"), encode(StateOf(end.task))
+            self.bus.ask(state, question, SEEN_AT_REST, partial(self._end_for_task, request, end))
+        else:
+            self._end_process(request, end)
+
+    def _end_for_task(self, request: Request, end: End, replies: Replies) -> None:
+        """End the process of a component that does not obey a task, unless what it says of itself is otherwise."""
+        told = own_answers(replies.samples, CallAnswer, lambda one: self.keys.call(one.component, "state"))[0]
+        own = next((one for one in told if one.life == end.life and not one.stopping), None)
+        if own is None or (own.task == end.task and not own.shared):
+            self._end_process(request, end)
+            return
+        if own.task == end.task:
+            request.refuse(f"{end.component} acts for other tasks as well")
+        else:
+            request.reply(self.keys.end(self.name), b"let go")
+        request.finish()
+
+    def _end_process(self, request: Request, end: End) -> None:
         def ended() -> None:
             request.reply(self.keys.end(self.name), b"ended")
             request.finish()
 
         try:
-            end = decode(request.payload, End)
             self.processes.end(end.component, end.life, ended)
         except PeerError as error:
             request.refuse(str(error))

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from selfconf.bus.memory import Network
-from selfconf.bus.port import Sample
+from selfconf.bus.port import Replies, Sample
 from selfconf.errors import AuthorError
-from selfconf.protocol.codec import decode
-from selfconf.protocol.messages import Page
+from selfconf.model.term import IRI
+from selfconf.protocol.codec import decode, encode
+from selfconf.protocol.messages import Apply, End, Page, Release
 from selfconf.site import Shelf, Site
 from selfconf.site.site import FILE_CHECK, FILE_CHECK_PAUSE, pause_after
-from tests.lab import ADVERTISEMENTS, iri, write_advertisements
+from tests.lab import ADVERTISEMENTS, Lab, iri, write_advertisements
 from tests.site.served import KEYS, ask, serve
 
 
@@ -103,3 +105,43 @@ def test_a_site_that_is_closed_is_not_called_any_more(network: Network, tmp_path
 def test_a_site_needs_a_name_that_can_stand_in_a_key(network: Network, tmp_path: Path) -> None:
     with pytest.raises(AuthorError, match="cannot name a site"):
         Site(network.node(), "lab", "a/b", Shelf([tmp_path], print))
+
+
+def test_a_process_is_not_ended_for_a_task_that_its_component_has_let_go_of_or_shares_with_another(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As where the release was lost with a link that was cut for a moment: the process may be that of others by now."""
+    lab = Lab(tmp_path)
+    lab.site("home", "tracker")
+    lab.component("tracker")
+    site, runtime, caller = lab.sites["home"], lab.runtimes["tracker"], lab.network.node()
+    ended: list[str] = []
+
+    def end_process(component: IRI, life: str, gone: Callable[[], None]) -> None:
+        ended.append(life)
+        gone()
+
+    monkeypatch.setattr(site.processes, "end", end_process)
+
+    def call(name: str, message: Apply | Release) -> None:
+        caller.ask(lab.keys.call(runtime.profile.component, name), encode(message), 1.0, lambda _: None)
+        lab.let_pass(0.5)
+
+    def asked_to_end(task: str) -> tuple[list[bytes], tuple[str, ...]]:
+        replies: list[Replies] = []
+        end = End(runtime.profile.component, runtime.life, task)
+        caller.ask(lab.keys.end("home"), encode(end), 2.0, replies.append)
+        assert lab.until(lambda: bool(replies))
+        return [sample.payload for sample in replies[0].samples], replies[0].errors
+
+    for task in ("one~1", "other~2"):
+        supervisor = lab.keys.configurator_life(task[:3], "1")
+        caller.announce(supervisor)
+        call("apply", Apply(1, supervisor, task))
+    assert asked_to_end("one~1") == ([], (f"{runtime.profile.component} acts for other tasks as well",))
+    call("release", Release(2, lab.keys.configurator_life("one", "1"), "one~1"))
+    assert asked_to_end("one~1") == ([b"let go"], ())
+    assert ended == []
+    assert runtime.active
+    assert asked_to_end("other~2") == ([b"ended"], ())
+    assert ended == [runtime.life]

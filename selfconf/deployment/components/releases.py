@@ -27,6 +27,8 @@ SITE_ENDS = 2.5
 a process that takes more than two."""
 END_SEEN = 0.1
 """Seconds after which the end of a life is seen whose process its site has ended."""
+LET_GO_SINCE = b"let go"
+"""What a site replies that finds that a component acts for the task no more, and so has not ended it."""
 GONE = 2.5
 """Seconds after which a component whose life has ended has turned itself off, if only the way to it was cut."""
 RELEASE_AGAIN = 2.5
@@ -134,7 +136,13 @@ class Releases:
             return
 
         def answered(replies: Replies) -> None:
-            if replies.samples:
+            if any(sample.payload == LET_GO_SINCE for sample in replies.samples):
+                self._ending.discard(component)
+                self._lives.released(component)
+                self._report(ComponentReleased(component, Verdict.DONE.value))
+                done = Verdict.DONE
+                self._step(Answered(component, Call.RELEASE, message.epoch, done, message.life, message.epoch))
+            elif replies.samples:
                 self._bus.later(END_SEEN, ended)
             else:
                 self._ending.discard(component)
@@ -153,6 +161,7 @@ class Releases:
             self._step(Answered(component, Call.RELEASE, message.epoch, Verdict.OTHER_LIFE, detail=detail))
             self._waking.process_ended(component)
 
+        end = End(component, message.life, message.task)
         self._lives.lost(component, message.life)
         self._ending.add(component)
-        self._bus.ask(self._ecology.keys.end(found.site), encode(End(component, message.life)), SITE_ENDS, answered)
+        self._bus.ask(self._ecology.keys.end(found.site), encode(end), SITE_ENDS, answered)

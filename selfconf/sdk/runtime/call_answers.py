@@ -73,8 +73,14 @@ class CallAnswers:
             callers=self._inputs.callers,
             patience=self._inputs.patience,
             stopping=self._stopping(),
-            shared=verdict is Verdict.BUSY and own is not None and own.active,
+            shared=own is not None
+            and own.active
+            and (verdict is Verdict.BUSY or (measured and self._acts_beside(own))),
         )
+
+    def _acts_beside(self, own: Hold) -> bool:
+        """Whether the component acts for other tasks than that of a hold."""
+        return any(hold.active and hold is not own for hold in self._activation().holds)
 
     def busy(self, call: Claim, by: Hold | None) -> CallAnswer:
         """The answer that another task is in the way: by that hold, or one for which the component is kept."""

@@ -69,12 +69,37 @@ def test_a_component_that_does_not_obey_its_release_is_ended_by_its_site(
         runtime.bus.serve(lab.keys.call(tracker), lambda _: None)
     agent.stop()
     assert lab.until(lambda: bool(lab.ended))
-    assert ended == [End(tracker, runtime.life)]
+    assert ended == [End(tracker, runtime.life, agent.identity.task)]
     (stopped,) = lab.acts("stopped")
     assert stopped.owed == (() if in_time else (tracker,))
     off = [event.detail for event in lab.acts("released") if event.component == tracker]
     assert off == (["its site has ended its process"] if in_time else [])
     assert lab.until(lambda: lab.active() == set())
+
+
+def test_a_component_that_has_let_go_of_the_task_out_of_its_sight_is_not_ended_and_not_out_of_control(
+    tmp_path: Path,
+) -> None:
+    """As over a link that was cut for a moment: its site finds that it acts for the task no more."""
+    lab, tracker = Lab(tmp_path), iri("person-tracker")
+    lab.site("astrid", *TASK)
+    for name in (*TASK, "tracker"):
+        lab.component(name)
+
+    def end(request: Request) -> None:
+        request.reply(lab.keys.end("living-room"), b"let go")
+        request.finish()
+
+    living_room(lab, "1", lambda node: None).serve(lab.keys.end("living-room"), end)
+    agent = lab.agent()
+    assert lab.running(agent)
+    runtime = lab.runtimes["tracker"]
+    runtime.calls.close()
+    runtime.bus.serve(lab.keys.call(tracker), lambda _: None)
+    agent.stop()
+    assert lab.until(lambda: bool(lab.ended))
+    assert lab.acts("stopped")[0].owed == ()
+    assert [event.detail for event in lab.acts("released") if event.component == tracker] == ["done"]
 
 
 def test_a_task_that_is_stopped_while_it_waits_says_of_no_component_that_it_is_off(lab: Lab) -> None:
