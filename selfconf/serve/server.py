@@ -40,6 +40,8 @@ log = logging.getLogger(__name__)
 
 SETTLED = 15.0
 """Seconds after which every configurator that lives has said what it has deployed."""
+FIRST_LOOK = 3
+"""Seconds after which the server is said to listen, also if it has not heard the whole ecology yet."""
 LAST_ANSWERS = 2
 """Seconds that answers which are under way may take when the server is ended."""
 AFTER_THEM = 2
@@ -166,18 +168,21 @@ async def _serve(
     bus.wake_up(watcher.begin)
     loop.call_later(SETTLED, lambda: record.hands.submit(record.settle))
     config = config_of(app)
-    server = _Server(config, board, onlookers)
+    url = f"http://{f'[{host}]' if ':' in host else host}:{port}/"
+    server = _Server(config, board, onlookers, lambda: listening(url))
     config.timeout_graceful_shutdown = LAST_ANSWERS + AFTER_THEM
-    listening(f"http://{f'[{host}]' if ':' in host else host}:{port}/")
     await server.serve(sockets=[place])
 
 
 class _Server(uvicorn.Server):
-    """Ends its streams when it is ended, and ends when the program that has started it is gone."""
+    """Says once that it listens, ends its streams when it is ended, and ends when the program that began it is gone."""
 
-    def __init__(self, config: uvicorn.Config, board: Board, onlookers: Onlookers) -> None:
+    def __init__(
+        self, config: uvicorn.Config, board: Board, onlookers: Onlookers, listening: Callable[[], None]
+    ) -> None:
         super().__init__(config)
         self._board, self._onlookers = board, onlookers
+        self._listening: Callable[[], None] | None = listening
         self._parent, self._looked = os.getppid(), 0.0
         for number in ending_signals():
             signal.signal(number, self.handle_exit)  # uvicorn itself listens for SIGINT and SIGTERM alone
@@ -187,7 +192,10 @@ class _Server(uvicorn.Server):
         self.should_exit = True
 
     async def on_tick(self, counter: int) -> bool:
-        """Look, ten times a second, whether to end."""
+        """Look, ten times a second, whether to end, and whether what is asked first would be answered."""
+        if self._listening is not None and (self._board.link or counter >= FIRST_LOOK * 10):
+            tell, self._listening = self._listening, None
+            tell()
         if started_by_another() and counter % int(PARENT_CHECK * 10) == 0 and orphaned(self._parent):
             self.should_exit = True
         ending = bool(await super().on_tick(counter))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import errno
 import os
 from collections.abc import Iterable, Mapping
@@ -9,14 +10,20 @@ from pathlib import Path
 
 import pytest
 
+from selfconf.bus.memory import Network
 from selfconf.errors import AuthorError, NetworkError
 from selfconf.query import StandingQuestion
 from selfconf.rdf.vocabulary import ROB
+from selfconf.serve import server
 from selfconf.serve.application import LOOPBACK
-from selfconf.serve.server import Record, bound, names_at
+from selfconf.serve.board import Board
+from selfconf.serve.connections import config_of
+from selfconf.serve.look_endpoint import Onlookers
+from selfconf.serve.server import FIRST_LOOK, Record, bound, names_at
 from selfconf.serve.watching.change import Body
 from selfconf.serve.watching.history import History
 from tests.lab import ADVERTISEMENTS
+from tests.serve.asgi import served
 from tests.serve.shown import advertised
 
 
@@ -34,6 +41,28 @@ def test_what_is_no_address_is_a_sentence() -> None:
         bound("127.0.0..1", 0)
     with pytest.raises(NetworkError, match="cannot listen"):
         bound("192.0.2.1", 0)
+
+
+@pytest.mark.parametrize(("link", "ticks"), [("tcp/127.0.0.1:7447", 1), ("", FIRST_LOOK * 10)])
+def test_it_is_said_to_listen_once_questions_are_answered_or_the_ecology_stays_silent(
+    board: Board, monkeypatch: pytest.MonkeyPatch, link: str, ticks: int
+) -> None:
+    """A program that asks as soon as it reads where the server listens gets an answer, and no 503."""
+    monkeypatch.setattr(server, "ending_signals", lambda: ())
+    said: list[str] = []
+    onlookers = Onlookers(Network().node(), board)
+
+    async def play() -> None:
+        program = server._Server(config_of(served(board)), board, onlookers, lambda: said.append("listening"))
+        board.link = ""
+        await program.on_tick(0)
+        assert said == []
+        board.link = link
+        for _ in range(2):
+            await program.on_tick(ticks)
+
+    asyncio.run(play())
+    assert said == ["listening"]
 
 
 def test_on_this_machine_a_server_is_asked_by_names_of_this_machine_alone() -> None:
