@@ -177,7 +177,7 @@ class ConstraintFailed:
         constraint = self.constraint.short
         wanted = self.wanted.short if isinstance(self.wanted, IRI) else str(self.wanted)
         if constraint in _LIMITS:
-            return f"{_LIMITS[constraint]} {wanted}"
+            return f"{_LIMITS[constraint]} {term_in_words(self.wanted)}"
         if constraint in _LENGTHS:
             return f"{_LENGTHS[constraint]} {wanted} characters long"
         if constraint in _PAIRS:

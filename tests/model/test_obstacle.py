@@ -65,6 +65,11 @@ WORDED: list[tuple[Obstacle, str, str]] = [
     ),
     (unmet(failed("minInclusive")), "place is hall, not at least 5", "its place is hall, not at least 5"),
     (
+        unmet(failed("minInclusive", Literal("5"))),
+        'place is hall, not at least "5"',
+        'its place is hall, not at least "5"',
+    ),
+    (
         unmet(ConstraintFailed(frozenset((FIVE,)), IRI(SH + "datatype"), IRI(XSD_NAMESPACE + "double"))),
         "place is 5, an integer, not a double",
         "its place is 5, an integer, not a double",

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from decimal import Decimal
 from functools import cached_property
 
-from rdflib import RDF, Graph, Literal, URIRef
+from rdflib import RDF, SH, Graph, Literal, URIRef
 from rdflib.term import Node
 
 from selfconf.model.diagnostic import Diagnostic, Severity
 from selfconf.rdf.positions import Positions
+from selfconf.rdf.sparql import declared_prefixes, without
 from selfconf.rdf.validation.diagnostics import at
 from selfconf.rdf.validation.lints.normal_form import ShapeSource
 from selfconf.rdf.validation.term_index import TermIndex, namespace
+
+_NAME = re.compile(r"<([^<>\s]*)>|(?<![\w?$:.-])([\w.-]*):([\w.-]*[\w-])")
+"""An IRI in a query, or a prefix and what follows it."""
 
 
 @dataclass(frozen=True)
@@ -65,6 +70,17 @@ class LintedFile:
             seen.add(cell)
             yield cell
             cell = self.graph.value(cell, RDF.rest)
+
+    def named_in_query(self, query: str) -> set[str]:
+        """The IRIs that a query of a shape names, by its own prefixes, those of the file and those of `sh:declare`."""
+        declared = {
+            str(self.graph.value(one, SH.prefix)): str(self.graph.value(one, SH.namespace))
+            for one in self.graph.objects(None, SH.declare)
+        }
+        own = declared_prefixes(query)
+        known = {prefix: base for prefix, base, _ in self.positions.prefixes} | declared | own
+        names = _NAME.findall(without(query, "#", '"', "'"))
+        return {iri or f"{known.get(prefix, '')}{local}" for iri, prefix, local in names} - {*own.values()}
 
     def said(self, statement: tuple[Node, Node, Node]) -> str:
         """Predicate and object of a statement, the object only if it has a short form."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Mapping
 
 from rdflib import RDF, SH, BNode, Literal, URIRef
@@ -19,7 +18,6 @@ from selfconf.rdf.permitted_fields import (
     PERMITTED_IN_SHAPES,
     SHAPE_VALUED,
 )
-from selfconf.rdf.sparql import without
 from selfconf.rdf.validation.lints.contradictions import (
     ShapeContradiction,
     contradictions,
@@ -29,10 +27,8 @@ from selfconf.rdf.validation.lints.contradictions import (
 from selfconf.rdf.validation.lints.linted_file import LintedFile
 from selfconf.rdf.validation.lints.normal_form import NormalForm
 from selfconf.rdf.validation.term_index import OWN, STANDARD, namespace
-from selfconf.rdf.vocabulary import SC
+from selfconf.rdf.vocabulary import ROB, SC
 
-_NAME = re.compile(r"<([^<>\s]*)>|(?<![\w?$:.-])([\w.-]*):([\w.-]*[\w-])")
-"""An IRI in a query, or a prefix and what follows it."""
 _READ_IN_SHAPES = PERMITTED_IN_SHAPES.union(
     vocabulary.SH[name]
     for name in ("sparql", "prefixes", "declare", "targetNode", "targetClass", "targetSubjectsOf", "targetObjectsOf")
@@ -161,8 +157,18 @@ def _told_otherwise(file: LintedFile) -> Iterator[tuple[Node, URIRef, URIRef]]:
         asked = role not in roles or (role, SH["class"], None) in file.graph
         for said, ignored in ((RDF.type, False), (SH.targetClass, asked)):
             for kind in () if ignored else file.graph.objects(role, said):
-                if isinstance(kind, URIRef) and (said == SH.targetClass or file.index.serves(str(kind), SC.Component)):
+                if isinstance(kind, URIRef) and (said == SH.targetClass or _of_components(file, kind, asked)):
                     yield role, said, kind
+
+
+def _of_components(file: LintedFile, kind: URIRef, asked: bool) -> bool:
+    """Whether the type of a role, or of a shape in one, is a class of components.
+
+    Of a role that asks for none it is also one that is declared as a class, and known as nothing else.
+    """
+    if asked or str(kind) not in file.index.classes or namespace(kind).startswith((*STANDARD, OWN)):
+        return file.index.serves(str(kind), SC.Component)
+    return not any(file.index.serves(str(kind), other) for other in (SC.Role, ROB.Signal))
 
 
 def unselective_roles(file: LintedFile) -> Iterator[Diagnostic]:
@@ -301,24 +307,12 @@ def queried_parameters(file: LintedFile) -> Iterator[Diagnostic]:
     parameters = {str(one) for one in file.graph.objects(None, URIRef(SC.parameter)) if isinstance(one, URIRef)}
     for predicate in (SH.select, SH.ask) if parameters else ():
         for subject, query in file.graph.subject_objects(predicate):
-            named = _named(file, without(str(query), "#", '"', "'"))
-            for parameter in sorted(parameters & named):
+            for parameter in sorted(parameters & file.named_in_query(str(query))):
                 short = file.short(parameter)
                 message = f"The parameter {short} stands for itself in a query, and never for a value."
                 hint = f"Ask for its value beside the query, as by sh:in ( {short} )."
                 offset = file.positions.triples[subject, predicate, query].object
                 yield file.at(offset, "SC-L16", message, hint=hint)
-
-
-def _named(file: LintedFile, query: str) -> set[str]:
-    """The IRIs that a query names, by the prefixes of its file and those that shapes declare for it."""
-    declared = {
-        str(file.graph.value(one, SH.prefix)): str(file.graph.value(one, SH.namespace))
-        for one in file.graph.objects(None, SH.declare)
-    }
-    known = {prefix: base for prefix, base, _ in file.positions.prefixes} | declared
-    names = _NAME.findall(query)
-    return {iri or f"{known.get(prefix, '')}{local}" for iri, prefix, local in names}
 
 
 def impossible_roles(file: LintedFile) -> Iterator[Diagnostic]:

@@ -100,6 +100,19 @@ def unknown_terms(file: LintedFile) -> Iterator[Diagnostic]:
             if iri not in meant:
                 meant[iri] = _meant(file, iri)
             yield _unknown(file, iri, offset, meant[iri])
+    for iri, offset in _queried_terms(file):
+        # A query does not tell terms from things, which no ontology need declare, unless it is near one that is.
+        if not _known(iri, file.index) and (like := meant.get(iri) or _meant(file, iri)):
+            yield _unknown(file, iri, offset, like)
+
+
+def _queried_terms(file: LintedFile) -> Iterator[tuple[str, int]]:
+    """What the queries of shapes name, each with the place of its query."""
+    for predicate in (SH.select, SH.ask):
+        for subject, query in file.graph.subject_objects(predicate):
+            if statement := file.positions.triples.get((subject, predicate, query)):
+                for iri in sorted(file.named_in_query(str(query))):
+                    yield iri, statement.object
 
 
 def _used_terms(file: LintedFile) -> Iterator[tuple[str, int]]:

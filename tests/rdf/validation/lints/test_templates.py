@@ -13,6 +13,22 @@ def test_a_role_that_has_the_type_of_its_component_is_told_what_to_write() -> No
     assert only(TEMPLATE.replace("sc:Role ; sh:class rob:Lamp", "sc:Role, rob:Lamp")).hint == "Write sh:class rob:Lamp."
 
 
+def test_a_role_that_has_a_class_of_the_authors_own_ontology_as_its_type_is_told_what_to_write() -> None:
+    own = ":Lift a owl:Class ; rdfs:label 'lift' .\n"
+    some = TEMPLATE.replace(
+        "sc:Role ; sh:class rob:Lamp", "sc:Role, :Lift ; sh:property [ sh:path rob:place ; sh:minCount 1 ]"
+    )
+    assert only(own + some).hint == "Write sh:class :Lift."
+    assert not lints(own + TEMPLATE.replace("sc:Role ;", "sc:Role, :Lift ;"))
+    assert not lints(own.replace(" ;", " ; rdfs:subClassOf sc:Role ;", 1) + some)
+
+
+def test_a_query_may_name_things_that_no_ontology_declares() -> None:
+    prefix = "PREFIX rob: <https://w3id.org/selfconf/robotics#>"
+    query = f"{prefix} SELECT $this {{ $this rob:place rob:SomewhereElse }}"
+    assert not lints(TEMPLATE + f":r sh:sparql [ sh:select '{query}' ] .")
+
+
 def test_a_component_of_the_name_of_a_role_is_told_to_have_another_and_not_what_a_role_writes() -> None:
     lamp = ':r a sc:Component, rob:Lamp ; rob:place :hall ; sc:hasInput [ sc:name "on" ; sc:signalType rob:Switch ] .'
     found = only(TEMPLATE + lamp)

@@ -58,6 +58,11 @@ def test_a_misspelt_term_of_selfconf_or_shacl_is_an_error(text: str, meant: str)
         (":a a sc:Component, :A ; sc:hasOperation [ sc:name 'x' ; sc:request rob:Imge ] .", "rob:Image"),
         (":a a sc:Component, :A ; sc:hasOperation [ sc:name 'x' ; sc:response rob:Imge ] .", "rob:Image"),
         (":A a owl:Class ; rdfs:label 'a' ; owl:equivalentClass rob:Lmap .", "rob:Lamp"),
+        (
+            TEMPLATE + ":r sh:sparql [ sh:select 'PREFIX r: <https://w3id.org/selfconf/robotics#> "
+            "SELECT $this { $this r:palce ?v }' ] .",
+            "rob:place",
+        ),
         (":A a owl:Class ; rdfs:label 'a' ; owl:equivalentClass [ owl:unionOf ( rob:Lmap ) ] .", "rob:Lamp"),
         (":A a owl:Class ; rdfs:label 'a' ; rdfs:subClassOf [ owl:onProperty rob:palce ] .", "rob:place"),
         (TEMPLATE + ":t sc:cost ( [ sc:term [ sc:property rob:palce ] ] ) .", "rob:place"),
