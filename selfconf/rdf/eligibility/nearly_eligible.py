@@ -14,9 +14,8 @@ from selfconf.model.obstacle import NoCommonValue, NotJudged, Obstacle, Paramete
 from selfconf.model.partition import Barred, NearMiss
 from selfconf.model.term import IRI, Term, sort_key
 from selfconf.rdf.advertisements import Advertisement
-from selfconf.rdf.eligibility import free_values
 from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex, TypeSet
-from selfconf.rdf.eligibility.compiled_roles import left_to_judge
+from selfconf.rdf.eligibility.judgements import Violations
 from selfconf.rdf.eligibility.partitioner import Advertisements, Partitioner, Tested, TestOutcome, another_value
 from selfconf.rdf.eligibility.role_tests import CompiledRole, ParameterTest, PropertyTest
 
@@ -181,25 +180,21 @@ class _RoleExclusions:
         """All that keeps components out for each value of a free parameter, behind what the tests have told of it."""
         focus = list(told)
         tests = {a: self._failed(a) for a in focus}
-        subjects = self.partitioner.judge.subjects(self.role, focus, self.ecology)
         reasons: dict[Advertisement, dict[Term, list[Obstacle]]] = {a: {} for a in focus}
-        for value in self._values(parameter, focus):
-            values = {} if parameter is None else {parameter: value}
-            judged = self.partitioner.violations(self.role, focus, self.ecology, values, subjects)
+        for value, judged in self._judged_by_value(parameter, focus):
             for a in focus:
                 reasons[a][value] = [*told[a], *_besides(judged.get(a.component, ()), tests[a])]
         return reasons
 
-    def _values(self, parameter: IRI | None, focus: Sequence[Advertisement]) -> list[Term]:
-        """The values of a free parameter with which a role is judged; without a parameter it is judged once."""
+    def _judged_by_value(
+        self, parameter: IRI | None, focus: Sequence[Advertisement]
+    ) -> Iterable[tuple[Term, Mapping[IRI, Violations]]]:
+        """What pySHACL finds for each of some values of a free parameter; without a parameter, once."""
         if parameter is None:
-            return [_NO_VALUE]
-        listed = free_values.enumerated(self.partitioner.document, parameter)
-        stated = listed | free_values.seen(
-            left_to_judge(self.partitioner.document, self.role), self.role.iri, self.partitioner.judge.visible(focus)
-        )
+            return [(_NO_VALUE, self.partitioner.violations(self.role, focus, self.ecology, {}))]
+        stated = self.partitioner.values_of(parameter, self.role, focus)
         suitable = sorted(self.partitioner.suitable.of(parameter, frozenset(stated)), key=sort_key)[:JUDGED]
-        return suitable if listed else [another_value(parameter), *suitable]  # the first that is near has the words
+        return self.partitioner.judged_by_value(self.role, parameter, suitable, focus, self.ecology)
 
     def _failed(self, advertisement: Advertisement) -> set[IRI | None]:
         """The property over which a test of the shape has failed, if one has; None stands for the component itself."""

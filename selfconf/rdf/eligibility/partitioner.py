@@ -7,7 +7,7 @@ says more than the tests, pySHACL judges the components that pass them, all in o
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from copy import copy
 from functools import partial
 from itertools import chain
@@ -288,13 +288,13 @@ class Partitioner:
                 stated[parameter] |= values
         for number, (parameter, passed) in by_value.items():
             role = self.roles[number]
-            shown = self.judge.visible([a for a, _ in passed] if role.local else ecology.values())
-            stated[parameter] |= free_values.seen(left_to_judge(self.document, role), role.iri, shown)
-            stated[parameter] |= free_values.enumerated(self.document, parameter)
+            stated[parameter] |= self.values_of(
+                parameter, role, [a for a, _ in passed] if role.local else ecology.values()
+            )
         suitable = {parameter: self.suitable.of(parameter, frozenset(values)) for parameter, values in stated.items()}
         for number, (parameter, passed) in by_value.items():
             found[number] = list(
-                self._judged_by_value(self.roles[number], parameter, suitable[parameter], passed, ecology)
+                self._eligible_by_value(self.roles[number], parameter, suitable[parameter], passed, ecology)
             )
         return [[one for one in map(partial(_suited, suitable), some) if all(one.allows.values())] for some in found]
 
@@ -330,7 +330,30 @@ class Partitioner:
             )
         return next(iter(parameters), None)
 
-    def _judged_by_value(
+    def values_of(self, parameter: IRI, role: CompiledRole, shown: Collection[Advertisement]) -> set[Term]:
+        """The values of a free parameter that may make a difference where pySHACL judges a role: listed, or seen."""
+        asked = left_to_judge(self.document, role)
+        seen = free_values.seen(asked, role.iri, self.judge.visible(shown))
+        return seen | free_values.enumerated(self.document, parameter)
+
+    def judged_by_value(
+        self,
+        role: CompiledRole,
+        parameter: IRI,
+        values: Iterable[Term],
+        focus: Sequence[Advertisement],
+        ecology: AdvertisementIndex,
+    ) -> Iterator[tuple[Term, dict[IRI, Violations]]]:
+        """What pySHACL finds wrong with some components for each value of the free parameter that a role mentions.
+
+        First for any other value than these, unless the parameter lists its values.
+        """
+        subjects = self.judge.subjects(role, focus, ecology)
+        others = () if free_values.enumerated(self.document, parameter) else (another_value(parameter),)
+        for value in (*others, *values):
+            yield value, self.violations(role, focus, ecology, {parameter: value}, subjects)
+
+    def _eligible_by_value(
         self,
         role: CompiledRole,
         parameter: IRI,
@@ -338,16 +361,13 @@ class Partitioner:
         passed: Sequence[Passed],
         ecology: AdvertisementIndex,
     ) -> Iterator[EligibleComponent]:
-        """A shape that mentions a free parameter where only pySHACL can tell: judged once for each value."""
+        """The components that are eligible by a shape that mentions a free parameter where only pySHACL can tell."""
         survivors = [advertisement for advertisement, _ in passed]
         allowed: dict[IRI, set[Term]] = {a.component: set() for a in survivors}
-        subjects = self.judge.subjects(role, survivors, ecology)
-        another = another_value(parameter)
-        others = () if free_values.enumerated(self.document, parameter) else (another,)
-        for value in (*sorted(values, key=sort_key), *others):
-            outside = self.violations(role, survivors, ecology, {parameter: value}, subjects)
+        for value, outside in self.judged_by_value(role, parameter, sorted(values, key=sort_key), survivors, ecology):
             for component in allowed.keys() - outside.keys():
                 allowed[component].add(value)
+        another = another_value(parameter)
         for advertisement, outcome in passed:
             found = frozenset(allowed[advertisement.component])
             others_allowed = {other: some for other, some in outcome.allows.items() if other != parameter}
