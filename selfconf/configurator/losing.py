@@ -45,13 +45,21 @@ def heed_failure(state: State, event: Failed) -> Reaction:
 
 
 def _ended_since(state: State, event: Failed) -> State:
-    """Note that its site can start a component that was lost in a life which has ended, at that moment or since."""
+    """Note that the life has ended in which a component was lost, at that moment or since.
+
+    Its site can start it again. Where no site is seen that can, what was silent may only have been cut off.
+    """
     loss = state.lost.get(event.component)
-    if loss is None or not event.startable or event.cause is not Cause.CRASH:
+    if loss is None or event.cause is not Cause.CRASH:
         return state
-    if loss.cause is Cause.CRASH or (loss.lasts and loss.life == event.life):
-        return replace(state, lost={**state.lost, event.component: replace(loss, startable=True)})
-    return state
+    in_that_life = loss.lasts and loss.life == event.life
+    if event.startable and (loss.cause is Cause.CRASH or in_that_life):
+        known = replace(loss, startable=True)
+    elif in_that_life and loss.cause is Cause.SILENCE:
+        known = replace(loss, cause=Cause.CRASH, detail=event.detail)
+    else:
+        return state
+    return replace(state, lost={**state.lost, event.component: known})
 
 
 def _passes_over(held: Held, event: Failed) -> bool:

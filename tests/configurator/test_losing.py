@@ -87,6 +87,8 @@ def test_what_cannot_act_is_searched_with_once_its_life_has_ended_if_its_site_ca
     history.composed(REFUSAL)
     if startable and life == "1":
         assert history.effects[-1] == Compose(history.state.attempt, frozenset({ODOMETRY}), history.state.target)
+    elif cause is Cause.SILENCE and life == "1":
+        assert history.state.awaits_return, "it may have been cut off, with all that it issued"
     else:
         assert history.state.phase is Phase.DISMANTLING
 
@@ -408,4 +410,13 @@ def test_what_acted_before_it_crashed_counts_as_soon_as_it_lives_again() -> None
     history = lost()
     history.composed(navigation(ODOMETRY))
     history.hear(Appeared({TRACKER: "2"}))
+    assert TRACKER not in history.state.lost
+
+
+def test_what_was_silent_before_its_life_seemed_to_end_may_have_been_cut_off_and_back_in_a_moment() -> None:
+    history = lost(Cause.SILENCE, startable=False)
+    history.hear(Failed(TRACKER, "1", Cause.CRASH, "its life has ended"))
+    assert history.state.lost[TRACKER].cause is Cause.CRASH
+    assert history.composed(REFUSAL) == [AwaitReturn(history.state.attempt)]
+    assert history.hear(Appeared({TRACKER: "1"}))[-1] == Discover()
     assert TRACKER not in history.state.lost
