@@ -101,5 +101,15 @@ def test_it_is_not_shown_for_ever(folder: Authority) -> None:
     assert len(door.shown) == ROUNDS
 
 
+def test_a_site_that_does_not_answer_yet_is_waited_for(folder: Authority) -> None:
+    """Its hub is opened anew, for example."""
+    network = Network(1)
+    mine, doors = network.node(), list[Door]()
+    mine.later(0.3, lambda: doors.append(Door(network, known_after=0)))
+    introduce(mine, "lab", folder.credentials((PrincipalKind.READER,)))
+    (door,) = doors
+    assert len(door.shown) == 1
+
+
 def test_nobody_need_answer(folder: Authority) -> None:
     introduce(Network(1).node(), "lab", folder.credentials((PrincipalKind.READER,)))

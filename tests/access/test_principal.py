@@ -54,7 +54,11 @@ def test_a_component_is_written_as_its_iri() -> None:
     assert Principal.written(CLOCK) == Principal.written(f"<{CLOCK}>") == clock
     assert clock == Principal(PrincipalKind.COMPONENT, component_chunk(CLOCK))
     assert Principal.of(clock.common_name) == clock
-    for iri in (IRI("urn:dev:mac:0024befffe804ff1"), IRI("urn:uuid:9b1deb4d-3b7d-4bad-9bdd-2b0d7b3dcb6d")):
+    for iri in (
+        IRI("urn:lamp"),
+        IRI("urn:dev:mac:0024befffe804ff1"),
+        IRI("urn:uuid:9b1deb4d-3b7d-4bad-9bdd-2b0d7b3dcb6d"),
+    ):
         assert Principal.written(iri) == Principal.component(iri)
     assert Principal.written("<x:clock>") == Principal.component(IRI("x:clock"))
 

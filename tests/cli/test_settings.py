@@ -9,6 +9,7 @@ import pytest
 from selfconf import rendezvous
 from selfconf.cli.main import parser
 from selfconf.cli.settings import VARIABLES, found_settings
+from selfconf.serve.watching.history import History
 from tests.cli.command import Outcome, run
 from tests.cli.processes import Home, dormant
 from tests.lab import ADVERTISEMENTS, NAVIGATE, write_advertisements
@@ -263,6 +264,17 @@ def test_an_ontology_that_is_not_there_is_a_mistake_of_the_project_file_where_th
     assert outcome.code == 1
     assert "selfconf.toml:1:1: error[SC-P05]: There is no file or folder nowhere.ttl." in outcome.out
     assert run(capsys, "validate", "../home").code == 2
+
+
+def test_the_endpoint_of_the_file_does_not_keep_a_query_from_the_past(
+    project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (project / "selfconf.toml").write_text('endpoint = "http://127.0.0.1:1/sparql"\n')
+    History(project / "past").close()
+    words = ("query", "ASK {}", "--history", str(project / "past"))
+    assert run(capsys, *words).code == 0
+    typed = run(capsys, *words, "--endpoint", "http://127.0.0.1:1/sparql")
+    assert typed.is_one_sentence("--history is for the past of a living ecology, and for files")
 
 
 def test_the_file_counts_for_the_commands_below_a_command_too(

@@ -17,7 +17,7 @@ from selfconf.bus.loop import Loop
 from selfconf.bus.zenoh import ANYWHERE_ON_LOOPBACK, Security, ZenohBus, client, router, with_port
 from selfconf.bus.zenoh import relay as relaying
 from selfconf.bus.zenoh.descriptors import sockets_at
-from selfconf.bus.zenoh.door import MOST_AT_DOOR
+from selfconf.bus.zenoh.door import MOST_AT_DOOR, Door
 from selfconf.bus.zenoh.relay import Hub, Relay
 from selfconf.bus.zenoh.session import GREETING, open_session
 from selfconf.errors import NetworkError
@@ -187,6 +187,26 @@ def test_an_uplink_has_the_rules_and_the_certificate_of_its_hub_and_ends_with_it
         alone = until(lambda: not links(), kitchen)
         kitchen.close()
     assert alone
+
+
+def test_strangers_are_kept_out_of_a_hub_that_was_opened_anew_too(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    judged: list[str] = []
+
+    class CountedDoor(Door):
+        def opened(self) -> None:
+            judged.append(self._endpoint)
+            super().opened()
+
+    monkeypatch.setattr(relaying, "Door", CountedDoor)
+    shown = Security(Authority.init(tmp_path / "authority").credentials((PrincipalKind.SITE,), "kitchen"))
+    kitchen = Hub("tls/127.0.0.1:0", shown)
+    try:
+        kitchen.secure(shown)
+    finally:
+        kitchen.close()
+    assert judged == [kitchen.endpoint] * 2
 
 
 @pytest.mark.parametrize("settings", ["#so_rcvbuf=65536", "?prio=1"])
