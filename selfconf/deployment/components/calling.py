@@ -127,7 +127,7 @@ class Calling:
         """A component has answered a call, or its state shows that it has obeyed: report it, and step."""
         self._tell(component, message, answer)
         if answer.verdict is Verdict.DONE and isinstance(message, Release):
-            self.lives.released(component)
+            self.lives.released(component, message.epoch)
         if answer.verdict is Verdict.DONE and not isinstance(message, Release):
             self.lives.obeyed(component, answer.life, message.epoch, late=message.epoch != self.state().epoch)
         if answer.verdict is Verdict.DONE and isinstance(message, Apply):

@@ -109,9 +109,11 @@ class HeldLives:
         """Whether a life of a component has obeyed a call of this task, and not yet a release."""
         return self._of[component].held == life or self.was_left_behind(component, life)
 
-    def released(self, component: IRI) -> None:
-        """Note that a component has obeyed a release."""
-        self._of[component].held, self._of[component].lost = None, ""
+    def released(self, component: IRI, epoch: int) -> None:
+        """Note that a component has obeyed a release of an epoch, unless it has obeyed a newer call meanwhile."""
+        known = self._of[component]
+        if known.obeyed[1] <= epoch:
+            known.held, known.lost = None, ""
 
     def leave_behind(self, component: IRI) -> None:
         """Remember the life of a component that is held and does not live any more: it may only be frozen."""

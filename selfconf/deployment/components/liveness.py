@@ -148,17 +148,18 @@ class Liveness:
                 if now:
                     self._step(Appeared({component: now[0]}))
             elif self._held_life(component) == life:
-                self._calls.look(component, partial(self._seen, component, life))
+                self._calls.look(component, partial(self._seen, component, life, self._state().epoch))
 
-    def _seen(self, component: IRI, life: str, answer: CallAnswer | None) -> None:
+    def _seen(self, component: IRI, life: str, epoch: int, answer: CallAnswer | None) -> None:
         """Judge a component whose life seemed to end and goes on, by the answer to a question for its state.
 
         If the component was cut off for a moment, it may have failed meanwhile, unnoticed: one that has said that it
         acts, and does not. If this node was, then the component may have turned itself off, or obey another
-        configurator.
+        configurator. An answer that comes in another epoch than the question says nothing of what was called for since:
+        that is looked at from time to time.
         """
-        held = self._state().held.get(component)
-        acted = held is not None and held.confirmed and self._state().phase is not Phase.DISMANTLING
+        held, state = self._state().held.get(component), self._state()
+        acted = held is not None and held.confirmed and state.phase is not Phase.DISMANTLING and state.epoch == epoch
         if answer is None:
             self._step(Failed(component, life, Cause.CRASH, "it does not answer since it was cut off"))
         elif answer.supervisor == self._calls.supervisor:

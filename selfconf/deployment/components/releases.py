@@ -138,7 +138,9 @@ class Releases:
         def answered(replies: Replies) -> None:
             if any(sample.payload == LET_GO_SINCE for sample in replies.samples):
                 self._ending.discard(component)
-                self._lives.released(component)
+                if self._lives.has_obeyed_since(component, message.life, message.epoch):
+                    return
+                self._lives.released(component, message.epoch)
                 self._report(ComponentReleased(component, Verdict.DONE.value))
                 done = Verdict.DONE
                 self._step(Answered(component, Call.RELEASE, message.epoch, done, message.life, message.epoch))

@@ -11,7 +11,7 @@ from selfconf.bus.port import Urgency
 from selfconf.configurator import Phase
 from selfconf.deployment.components.releases import GONE
 from selfconf.protocol.codec import encode
-from selfconf.protocol.messages import Cause, Fail
+from selfconf.protocol.messages import CallAnswer, Cause, Fail, Release, Verdict
 from tests.deployment.simulated import living_room, slow_code
 from tests.deployment.tasks import TASK
 from tests.lab import Lab, iri
@@ -72,6 +72,16 @@ def test_a_component_that_its_site_does_not_start_again_is_not_out_of_control(tm
     assert agent.state.lost[tracker].detail == "it has crashed too often"
     assert lab.acts("refused")[0].owed == ()
     assert tracker in agent.state.owed
+
+
+def test_a_late_answer_to_a_release_does_not_count_for_a_component_that_is_held_again(lab: Lab) -> None:
+    agent, tracker = lab.agent(), iri("person-tracker")
+    assert lab.running(agent)
+    life, components, epoch = lab.runtimes["tracker"].life, agent._components, agent.state.epoch
+    for since, is_held in ((1, True), (0, False)):
+        release = Release(epoch - since, agent.supervisor, agent.identity.task, life)
+        components.calls._calling.answered(tracker, release, CallAnswer(Verdict.DONE, tracker, life))
+        assert components.lives.has_obeyed(tracker, life) is is_held
 
 
 def test_a_component_that_goes_on_after_it_was_frozen_for_long_is_released(lab: Lab) -> None:

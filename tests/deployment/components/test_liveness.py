@@ -12,7 +12,7 @@ from selfconf.configurator.events import Appeared, Event
 from selfconf.configurator.state import Phase
 from selfconf.deployment.components import liveness
 from selfconf.discovery import ecology_view
-from selfconf.protocol.messages import Cause
+from selfconf.protocol.messages import CallAnswer, Cause, Verdict
 from selfconf.sdk.runtime.supervision import GRACE
 from tests.deployment.simulated import home, living_room, slow_code
 from tests.deployment.tasks import TASK
@@ -173,6 +173,20 @@ def test_a_component_that_is_cut_off_for_a_moment_before_it_acts_has_not_failed(
     assert lab.running(agent)
     assert not agent.state.lost
     assert lab.active() == TASK | {"tracker"}
+
+
+@pytest.mark.parametrize("late", [False, True])
+def test_an_answer_of_before_a_component_was_applied_to_anew_is_not_that_of_one_that_has_failed(
+    lab: Lab, late: bool
+) -> None:
+    """It was asked whether it lives on while it did not act yet, and the network has delayed its answer."""
+    agent, tracker = lab.agent(), iri("person-tracker")
+    assert lab.running(agent)
+    life = lab.runtimes["tracker"].life
+    answer = CallAnswer(Verdict.DONE, tracker, life, supervisor=agent.supervisor, task=agent.identity.task)
+    agent._components.liveness._seen(tracker, life, agent.state.epoch - late, answer)
+    lab.let_pass(0.1)
+    assert (tracker in agent.state.lost) is not late
 
 
 def test_a_component_that_crashes_is_lost_after_one_question_to_the_network(lab: Lab) -> None:

@@ -109,7 +109,7 @@ def test_components_that_have_come_to_rest_out_of_sight_are_no_news_to_a_task_th
     agent.stop()
     assert agent.state.phase is Phase.DISMANTLING
     for component in list(agent.state.held):
-        agent._components.liveness._seen(component, "1", CallAnswer(Verdict.DONE, component, "1"))
+        agent._components.liveness._seen(component, "1", agent.state.epoch, CallAnswer(Verdict.DONE, component, "1"))
     assert lab.until(lambda: bool(lab.ended))
     assert not lab.acts("connected")
 
