@@ -12,6 +12,8 @@ from starlette.requests import Request
 from starlette.responses import StreamingResponse
 
 from selfconf.bus.memory import Network
+from selfconf.bus.port import Request as Question
+from selfconf.bus.port import Urgency
 from selfconf.serve.board import Board
 from selfconf.serve.look_endpoint import MOST_LOOKS, Onlookers
 from tests.lab import iri
@@ -42,6 +44,31 @@ def test_a_stream_tells_until_the_server_ends(board: Board) -> None:
         assert "does not tell" in json.loads(data.removeprefix("data: "))["trouble"]
         onlookers.close()
         assert [part async for part in stream if b"event: log" not in part] == []
+
+    asyncio.run(play())
+
+
+def test_who_goes_costs_the_ecology_nothing_any_more(board: Board) -> None:
+    async def play() -> None:
+        network, listened, asked = Network(), list[bool](), list[str]()
+        other, tracker = network.node(), iri("person-tracker")
+        other.publisher(board.keys.output(tracker, "pose"), Urgency.SIGNAL, listened.append)
+
+        def answer(request: Question) -> None:
+            asked.append(request.key)
+            request.finish()
+
+        other.serve(board.keys.log(board.advertised[tracker].site), answer)
+        stream = await look(Onlookers(network.node(), board))
+        network.run(lambda: False, 10.0)
+        assert listened[-1]
+        assert len(asked) > 2
+        await stream.aclose()
+        network.run(lambda: False, 1.0)
+        asked.clear()
+        network.run(lambda: False, 10.0)
+        assert not listened[-1]
+        assert asked == []
 
     asyncio.run(play())
 

@@ -14,6 +14,10 @@ def test_a_query_comes_in_three_ways() -> None:
     assert query_request("POST", "", FORM, f"query=ASK+%7B%7D&{graphs}".encode()) == wanted
     assert query_request("POST", graphs, f"{DIRECT}; charset=UTF-8", b"ASK {}") == wanted
     assert query_request("GET", "", "", b"") is None
+    for parameters, number in (("qery=ASK", "no"), ("query=ASK&query=ASK", "more than one")):
+        with pytest.raises(RequestRefusedError) as refused:
+            query_request("GET", parameters, "", b"")
+        assert refused.value.detail == f"the request has {number} parameter 'query'; give exactly one"
 
 
 @pytest.mark.parametrize(
