@@ -65,7 +65,16 @@ def _message(result: ViolationResult) -> str:
     """What pySHACL says of a result, or the author of the shape."""
     messages = [text for _, text in result.get(SH.resultMessage, ())]  # pySHACL hands them on in no order
     said = in_english((getattr(one, "language", None) or "", str(one)) for one in messages)
-    return said or "does not conform"
+    return said or _without_message(result)
+
+
+def _without_message(result: ViolationResult) -> str:
+    """What can be said of a result that has no message, as that of a query whose author states none."""
+    if result[SH.sourceConstraintComponent][0][1] != SH.SPARQLConstraintComponent:
+        return "does not conform"
+    focus = result[SH.focusNode][0][1]
+    found = [from_rdflib(value) for _, value in result.get(SH.value, ()) if value != focus]
+    return f"the query of the shape finds {in_words(found) if found else 'it'}, and no sh:message says what is wrong"
 
 
 def _kind(result: ViolationResult) -> str:

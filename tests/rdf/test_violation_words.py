@@ -78,3 +78,15 @@ def test_a_constraint_of_a_path_is_told_as_the_compiled_tests_tell_those_of_a_pr
 )
 def test_a_node_another_node_and_a_path_are_told_by_name(shape: str, words: str) -> None:
     assert told(shape) == [words]
+
+
+@pytest.mark.parametrize(
+    ("query", "found"),
+    [
+        ("SELECT $this ?value WHERE { $this <https://example.org/peis-home#q> ?value }", "5"),
+        ("SELECT $this WHERE { $this <https://example.org/peis-home#q> 5 }", "it"),
+    ],
+)
+def test_a_query_without_a_message_tells_what_it_finds(query: str, found: str) -> None:
+    words = f"the query of the shape finds {found}, and no sh:message says what is wrong"
+    assert told(f"sh:sparql [ sh:select '{query}' ]") == [words]
