@@ -12,22 +12,13 @@ from enum import Enum
 from typing import ClassVar
 
 from selfconf.model.immutable import immutable
-from selfconf.model.literal_values import DATATYPES
 from selfconf.model.profile import CALL_MARK, Operation, WantedSignal, port_in_words
+from selfconf.model.property_fault import Fault, subject_of
 from selfconf.model.setting_names import setting
 from selfconf.model.signal_likeness import Degree, SignalMatch
-from selfconf.model.term import IRI, Literal, Term
+from selfconf.model.term import IRI, Term
 from selfconf.model.unit_dimension import differ_in_dimension
-from selfconf.model.wording import in_full, in_words, listed, one_line, term_in_words
-
-_LIMITS = {
-    "minInclusive": "at least",
-    "minExclusive": "more than",
-    "maxInclusive": "at most",
-    "maxExclusive": "less than",
-}
-_PAIRS = {"lessThan": "less than", "lessThanOrEquals": "at most"}
-_LENGTHS = {"minLength": "at least", "maxLength": "at most"}
+from selfconf.model.wording import in_words, listed, one_line, with_article
 
 
 class _Predicate:
@@ -88,128 +79,6 @@ class WrongComponent(_Predicate):
 
 
 @immutable
-class Missing:
-    """There is no value where one has to be."""
-
-    def said(self, name: str) -> str:
-        """The fault of the property of that name."""
-        return f"has no {name}"
-
-
-@immutable
-class WrongCount:
-    """There are fewer or more values than the role allows."""
-
-    found: int
-    too_many: bool
-
-    def said(self, name: str) -> str:
-        """The fault of the property of that name."""
-        return f"has {self.found} of {name}, too {'many' if self.too_many else 'few'}"
-
-
-@immutable
-class WrongShareOfValues:
-    """Fewer or more values are of some kind than the role allows (`sh:qualifiedValueShape`)."""
-
-    found: int
-    wanted: int
-    too_many: bool
-
-    def said(self, name: str) -> str:
-        """The fault of the property of that name."""
-        limit = "most" if self.too_many else "least"
-        return f"has {self.found} of {name} that are as asked for, not at {limit} {self.wanted}"
-
-
-@immutable
-class NotAmong:
-    """Some values are not among those that the role allows (`sh:in`), or not the one that it requires."""
-
-    values: frozenset[Term]
-    members: frozenset[Term]
-    partly: bool = False
-    """Whether the property has further values, which are among them."""
-
-    def said(self, name: str) -> str:
-        """The fault of the property of that name."""
-        alike = {_bare(value) for value in self.values} & {_bare(member) for member in self.members}
-        worded = in_full if alike else in_words
-        said, wanted = worded(self.values), worded(self.members)
-        return f"{name} is {said} as well, not only {wanted}" if self.partly else f"{name} is {said}, not {wanted}"
-
-
-def _bare(term: Term) -> str:
-    """What a term is called without the marks that distinguish a literal from an IRI."""
-    return term.lexical if isinstance(term, Literal) else term_in_words(term)
-
-
-@immutable
-class ConstraintFailed:
-    """Some values fail a constraint of SHACL on each value; `constraint` is its parameter, such as `sh:pattern`.
-
-    Where that compares two properties (`sh:lessThan`), `wanted` is the other one.
-    """
-
-    values: frozenset[Term]
-    constraint: IRI
-    wanted: Term
-
-    def said(self, name: str) -> str:
-        """The fault of the property of that name."""
-        return f"{name} is {in_words(self.values)}{self._number}, not {self._wanted}"
-
-    @property
-    def _number(self) -> str:
-        """Which datatype numbers have where another is asked for: 5 is an integer, 5.0 a decimal and 5e0 a double."""
-        kinds = {value.datatype for value in self.values if isinstance(value, Literal)}
-        if (
-            self.constraint.short != "datatype"
-            or len(kinds) != 1
-            or self.wanted in kinds
-            or kinds.isdisjoint(DATATYPES)
-        ):
-            return ""
-        return f", {_with_article(kinds.pop().short)}"
-
-    @property
-    def _wanted(self) -> str:
-        constraint = self.constraint.short
-        wanted = self.wanted.short if isinstance(self.wanted, IRI) else str(self.wanted)
-        if constraint in _LIMITS:
-            return f"{_LIMITS[constraint]} {term_in_words(self.wanted)}"
-        if constraint in _LENGTHS:
-            return f"{_LENGTHS[constraint]} {wanted} characters long"
-        if constraint in _PAIRS:
-            return f"{_PAIRS[constraint]} its {wanted}"
-        return f"like /{wanted}/" if constraint == "pattern" else _with_article(wanted)
-
-
-def _with_article(kind: str) -> str:
-    """A datatype or a kind of node with its article: an integer, an IRI."""
-    return f"{'an' if kind[:1] in tuple('AEIOaeiou') else 'a'} {kind}"
-
-
-@immutable
-class Ambiguous:
-    """There are several values where a free parameter has to be equal to each."""
-
-    parameter: IRI
-
-    def said(self, name: str) -> str:
-        """The fault of the property of that name."""
-        return f"{name} has several values, so that no one {self.parameter.short} fits"
-
-
-Fault = Missing | WrongCount | WrongShareOfValues | NotAmong | ConstraintFailed | Ambiguous
-
-
-def _subject_of(fault: Fault) -> str:
-    """What a fault is said of: the component, or its property."""
-    return "it" if isinstance(fault, Missing | WrongCount | WrongShareOfValues) else "its"
-
-
-@immutable
 class PropertyUnmet:
     """All that is wrong with one property: one obstacle, as one change of the property mends it."""
 
@@ -222,7 +91,7 @@ class PropertyUnmet:
     @property
     def clause(self) -> str:
         """The obstacle as clauses: about the component where it lacks the property, else about the property."""
-        return self._with_message(f"{_subject_of(fault)} {fault.said(self.path.short)}" for fault in self.faults)
+        return self._with_message(f"{subject_of(fault)} {fault.said(self.path.short)}" for fault in self.faults)
 
     def __str__(self) -> str:
         return self._with_message(fault.said(self.path.short) for fault in self.faults)
@@ -271,7 +140,7 @@ class Excluded(_Predicate):
 
     def __str__(self) -> str:
         said = "is several things of which it must be one" if self.several else "is what it must not be"
-        what = f": {listed(_with_article(kind.short) for kind in self.classes)}" if self.classes else ""
+        what = f": {listed(with_article(kind.short) for kind in self.classes)}" if self.classes else ""
         return f"{said}{what}, by its {listed(path.short for path in self.paths)}" if self.paths else f"{said}{what}"
 
 

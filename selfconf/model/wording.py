@@ -108,3 +108,8 @@ def term_in_words(value: Term) -> str:
     if isinstance(value, Literal):
         return value.turtle(lambda datatype: datatype.short)
     return value.short if isinstance(value, IRI) else "a blank node"
+
+
+def with_article(kind: str) -> str:
+    """A datatype or a kind of node with its article: an integer, an IRI."""
+    return f"{'an' if kind[:1] in tuple('AEIOaeiou') else 'a'} {kind}"

@@ -1,4 +1,4 @@
-"""What pySHACL finds violated, in the words in which the compiled tests say it (`selfconf.model.obstacle`).
+"""What pySHACL finds violated, in the words in which the compiled tests say it (`selfconf.model.property_fault`).
 
 What the author of a shape says goes before (`sh:message`). Of constraints over other shapes pySHACL's own message is
 kept, with names in place of IRIs: it shows what is asked for.
@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from rdflib import RDF, SH, Graph, URIRef
 from rdflib.term import Node
 
-from selfconf.model.obstacle import ConstraintFailed, NotAmong
+from selfconf.model.property_fault import ConstraintFailed, NotAmong
 from selfconf.model.term import IRI, Term, sort_key
 from selfconf.model.wording import in_english, in_words, listed, term_in_words
 from selfconf.rdf.rdflib_terms import from_rdflib

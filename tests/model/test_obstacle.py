@@ -7,14 +7,9 @@ from typing import get_args
 import pytest
 
 from selfconf.model.obstacle import (
-    Ambiguous,
-    ConstraintFailed,
     Excluded,
-    Fault,
-    Missing,
     NoAlternative,
     NoCommonValue,
-    NotAmong,
     NotFedItself,
     NotJudged,
     Obstacle,
@@ -26,11 +21,18 @@ from selfconf.model.obstacle import (
     UnfitOutput,
     UnlikePorts,
     WrongComponent,
-    WrongCount,
-    WrongShareOfValues,
     WrongType,
 )
 from selfconf.model.profile import Operation
+from selfconf.model.property_fault import (
+    Ambiguous,
+    ConstraintFailed,
+    Fault,
+    Missing,
+    NotAmong,
+    WrongCount,
+    WrongShareOfValues,
+)
 from selfconf.model.signal_likeness import Degree, SignalMatch
 from selfconf.model.term import IRI, XSD_NAMESPACE, Literal
 from selfconf.rdf.vocabulary import UNIT
@@ -257,24 +259,6 @@ def test_types_of_one_name_are_told_apart_by_their_namespaces() -> None:
     )
 
 
-@pytest.mark.parametrize(
-    ("constraint", "words"),
-    [
-        ("minInclusive", "at least 5"),
-        ("minExclusive", "more than 5"),
-        ("maxInclusive", "at most 5"),
-        ("maxExclusive", "less than 5"),
-        ("minLength", "at least 5 characters long"),
-        ("maxLength", "at most 5 characters long"),
-        ("pattern", "like /5/"),
-        ("datatype", "a 5"),
-    ],
-)
-def test_a_constraint_says_what_is_wanted(constraint: str, words: str) -> None:
-    assert failed(constraint).said("place") == f"place is hall, not {words}"
-    assert failed("class", CAMERA).said("place") == "place is hall, not a Camera"
-
-
 def test_several_faults_of_a_property_are_one_obstacle() -> None:
     several = unmet(Missing(), failed("maxInclusive"))
     assert str(several) == "has no place; place is hall, not at most 5"
@@ -285,16 +269,3 @@ def test_several_faults_of_a_property_are_one_obstacle() -> None:
 
 def test_alternatives_that_lack_the_same_say_it_once() -> None:
     assert str(NoAlternative((WrongType(CAMERA), WrongType(CAMERA)))) == "is no Camera"
-
-
-def test_values_with_one_local_name_are_told_apart_by_their_whole_iris() -> None:
-    here, there = IRI("https://example.org/here#bed1"), IRI("https://example.org/there#bed1")
-    assert NotAmong(frozenset((here,)), frozenset((there,))).said("place") == f"place is {here!r}, not {there!r}"
-    text = Literal("bed1")
-    assert NotAmong(frozenset((text,)), frozenset((there,))).said("place") == f'place is "bed1", not {there!r}'
-
-
-def test_of_several_values_that_one_that_is_not_allowed_is_named_as_a_further_one() -> None:
-    first, second, third = (IRI(f"https://example.org/#bed{number}") for number in (1, 2, 3))
-    fault = NotAmong(frozenset((first,)), frozenset((second, third)), partly=True)
-    assert fault.said("bed") == "bed is bed1 as well, not only bed2 or bed3"

@@ -20,6 +20,7 @@ from selfconf.model.wording import (
     one_line,
     plain,
     utc_text,
+    with_article,
 )
 
 HALL, CELLAR = (IRI(f"https://example.org/{name}") for name in ("hall", "cellar"))
@@ -76,3 +77,12 @@ def test_a_moment_is_said_in_utc_to_the_second() -> None:
 
 def test_a_path_in_a_command_is_one_argument_and_no_option() -> None:
     assert [as_typed(path) for path in ("a/b.ttl", "my home", "-x")] == ["a/b.ttl", "'my home'", "./-x"]
+
+
+def test_a_kind_has_the_article_of_its_first_letter() -> None:
+    assert [with_article(kind) for kind in ("integer", "IRI", "double", "")] == [
+        "an integer",
+        "an IRI",
+        "a double",
+        "a ",
+    ]

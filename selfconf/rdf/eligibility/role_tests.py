@@ -13,23 +13,25 @@ from collections.abc import Iterable, Iterator
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.immutable import immutable
 from selfconf.model.obstacle import (
-    Ambiguous,
-    ConstraintFailed,
     Excluded,
-    Fault,
-    Missing,
     NoAlternative,
-    NotAmong,
     NotJudged,
     Obstacle,
     ParameterUndeclared,
     PropertyUnmet,
     WrongComponent,
-    WrongCount,
-    WrongShareOfValues,
     WrongType,
 )
 from selfconf.model.profile import Profile
+from selfconf.model.property_fault import (
+    Ambiguous,
+    ConstraintFailed,
+    Fault,
+    Missing,
+    NotAmong,
+    WrongCount,
+    WrongShareOfValues,
+)
 from selfconf.model.term import IRI, Term
 from selfconf.rdf.shacl import MatchTooCostly, PairTest, ValueTest
 

@@ -9,7 +9,8 @@ import re
 from collections.abc import Collection, Iterable, Mapping
 
 from selfconf.model.immutable import replace
-from selfconf.model.obstacle import ConstraintFailed, NotAmong, NotJudged, ShapeViolated
+from selfconf.model.obstacle import NotJudged, ShapeViolated
+from selfconf.model.property_fault import ConstraintFailed, NotAmong
 from selfconf.model.template import Parameter, Role
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term, sort_key
 from selfconf.model.wording import is_one_line

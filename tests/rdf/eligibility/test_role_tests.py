@@ -6,21 +6,16 @@ import pytest
 
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.obstacle import (
-    Ambiguous,
-    ConstraintFailed,
     Excluded,
-    Fault,
-    Missing,
     NoAlternative,
-    NotAmong,
     NotJudged,
     ParameterUndeclared,
     PropertyUnmet,
     WrongComponent,
-    WrongCount,
     WrongType,
 )
 from selfconf.model.profile import OperationalParameter, Profile
+from selfconf.model.property_fault import Ambiguous, ConstraintFailed, Fault, Missing, NotAmong, WrongCount
 from selfconf.model.term import Literal, Term
 from selfconf.rdf.eligibility.role_tests import (
     ClassTest,

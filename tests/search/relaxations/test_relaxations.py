@@ -8,9 +8,10 @@ from itertools import combinations_with_replacement
 import pytest
 from hypothesis import given
 
-from selfconf.model.obstacle import NotAmong, PropertyUnmet
+from selfconf.model.obstacle import PropertyUnmet
 from selfconf.model.partition import Candidate, NearMiss
 from selfconf.model.profile import Profile
+from selfconf.model.property_fault import NotAmong
 from selfconf.model.refusal import Refusal
 from selfconf.model.relaxation import AcceptNearMiss, AddComponents, Addition
 from selfconf.search.additions import asking_for

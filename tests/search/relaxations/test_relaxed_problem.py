@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from selfconf.model.obstacle import NotAmong, PropertyUnmet
+from selfconf.model.obstacle import PropertyUnmet
 from selfconf.model.partition import Candidate, NearMiss
+from selfconf.model.property_fault import NotAmong
 from selfconf.model.relaxation import (
     AcceptNearMiss,
     AddComponents,
