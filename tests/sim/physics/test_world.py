@@ -112,6 +112,7 @@ def test_a_wall_stops_her_and_is_named(apartment: Apartment) -> None:
     world.drive({"linear": 0.3, "angular": 0.0})
     world.advance(4.0)
     assert {touch.other for touch in world.contacts()} == {"west-wall/0"}
+    assert all(touch.force > 0.0 for touch in world.contacts()), "what is merely close is not touched"
     assert world.pose().x > 0.19
     world.close()
 

@@ -21,7 +21,7 @@ def test_a_drive_without_set_points_stands_still() -> None:
 def test_set_points_are_cut_to_what_the_motors_can_do() -> None:
     drive = Drive()
     drive.accept({"linear": 5.0, "angular": -9.0}, time=0.0)
-    assert drive.set_point(0.0) == {"linear": Drive.fastest_linear, "angular": -Drive.fastest_angular}
+    assert drive.set_point(0.0) == {"linear": 0.6, "angular": -1.8}
 
 
 def test_a_ramp_follows_no_faster_than_its_rates_and_then_stays() -> None:
