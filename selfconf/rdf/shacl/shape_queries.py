@@ -8,7 +8,7 @@ expression, and flags that rdflib passes over. They are looked for where a query
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 import pyoxigraph as ox
 
@@ -46,7 +46,7 @@ def refused_queries(document: Document, constraint: Node) -> Iterator[tuple[Trip
     for predicate, query in document.about(constraint):
         if predicate in (SH.select, SH.ask):
             text = str(query)
-            reason = why_not_asked(text, prefixes, predicate.short) or _misleading(text, prefixes)
+            reason = why_not_asked(text, prefixes, predicate.short) or _misleading(text)
             if reason is not None:
                 yield (constraint, predicate, query), reason
 
@@ -77,10 +77,10 @@ def _is_absolute(text: str) -> bool:
         return False
 
 
-def _misleading(text: str, prefixes: Mapping[str, str]) -> str | None:
+def _misleading(text: str) -> str | None:
     """What a query asks by a pattern or by flags that make it find nothing, in a sentence; None if it asks neither."""
     for function, arguments in _calls(text):
-        values = [_constant(argument, prefixes) for _, argument in arguments]
+        values = [_constant(argument) for _, argument in arguments]
         place = _PLACE_OF_FLAGS[function]
         flags = values[place] if len(values) > place else ""
         if flags is not None and not set(flags) <= set(_FLAGS):
@@ -109,16 +109,16 @@ def _calls(text: str) -> Iterator[tuple[str, list[tuple[int, str]]]]:
         yield call[1].upper(), arguments
 
 
-def _constant(expression: str, prefixes: Mapping[str, str]) -> str | None:
-    """The text that an expression without variables is; None for any other."""
-    if not set(hidden(expression)).isdisjoint("?$"):
+def _constant(expression: str) -> str | None:
+    """The text that an expression is, if it is a literal: to evaluate others could take as long as they like."""
+    if not expression.startswith(("'", '"')) or hidden(expression).strip():
         return None
     try:
-        answer = ox.Store().query(f"SELECT ({expression} AS ?value) {{}}", prefixes=dict(prefixes))
-    except (SyntaxError, RuntimeError):  # it uses what is declared elsewhere
+        answer = ox.Store().query(f"SELECT ?value {{ VALUES ?value {{ {expression} }} }}")
+    except SyntaxError:  # a string without an end
         return None
     values = [row["value"] for row in answer] if isinstance(answer, ox.QuerySolutions) else []
-    return values[0].value if values and isinstance(values[0], ox.Literal) else None
+    return values[0].value if len(values) == 1 and isinstance(values[0], ox.Literal) else None
 
 
 def _position(text: str, offset: int) -> str:
