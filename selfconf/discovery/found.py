@@ -26,6 +26,8 @@ class FoundAdvertisement:
     """Which life of the site has answered."""
     unable: str = ""
     """Why the component, a composite, cannot act now, as its site says."""
+    also_elsewhere: bool = False
+    """Whether other sites advertise the component as well, and were left out for this one."""
 
 
 @dataclass(slots=True)

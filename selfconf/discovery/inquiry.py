@@ -11,7 +11,7 @@ replies only that this is still the one.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING
@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 from selfconf.bus.port import Replies, Sample
 from selfconf.discovery.found import Discovery, FoundAdvertisement, KnownSite, SiteLife, SiteNames
 from selfconf.errors import PeerError, SelfconfError, TurtleError
+from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import MOST_ADVERTISED, decode, encode
 from selfconf.protocol.keys import life_of, owner_of, site_of
@@ -219,6 +220,7 @@ class SiteInquiry:
                     f"left out {component}: it is disputed, for the sites {' and '.join(sites)} advertise it; say whose"
                     f" it is: selfconf access --believe SITE {component}"
                 )
+        found |= _also_elsewhere(found, disputed)
         self._complaints += _few(said, "that are disputed" if decided is not None else "of components that others have")
         return found
 
@@ -269,6 +271,11 @@ class SiteInquiry:
         if len(mine) != 1 and not bad:
             complaints.append(f"left out a reply of {name}: it does not advertise {page.component}")
         return mine[0] if len(mine) == 1 else None
+
+
+def _also_elsewhere(found: Mapping[IRI, FoundAdvertisement], disputed: Iterable[IRI]) -> dict[IRI, FoundAdvertisement]:
+    """The advertisements that are found of disputed components, each with that said of it."""
+    return {one: replace(found[one], also_elsewhere=True) for one in disputed if one in found}
 
 
 def _few(complaints: list[str], whose: str) -> list[str]:

@@ -22,6 +22,7 @@ class LivingSites:
 
     def __init__(self, context: TaskContext, waking: Waking) -> None:
         self._bus, self._step, self._waking = context.ecology.bus, context.step, waking
+        self._ecology = context.ecology
         self._sites: set[str] = set()
         """The liveliness keys of the sites that answered last, or are news: one that was started again has another."""
         self._shown: set[str] = set()
@@ -82,6 +83,8 @@ class LivingSites:
             self._sites.discard(key)
             if not self.lives(owner_of(key)):
                 self._waking.site_ended(owner_of(key))
+            if any(one.also_elsewhere and one.site == owner_of(key) for one in self._ecology.discovery.found.values()):
+                self._step(Appeared({}))  # what other sites advertise as well counts now as theirs
 
     def _end_unseen(self) -> None:
         for site in sorted(self._unseen):

@@ -18,6 +18,7 @@ from selfconf.model.refusal import Refusal
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Page
 from tests.deployment.components.sight import out_of_sight
+from tests.deployment.simulated import living_room
 from tests.deployment.tasks import TASK
 from tests.lab import ADVERTISEMENTS, PREFIXES, Lab, iri
 
@@ -201,3 +202,23 @@ def test_a_component_of_a_site_that_does_not_answer_is_given_time_though_the_end
     out_of_sight(lab, "tracker", seconds=AWAY / 2)
     lab.let_pass(10.0)
     assert lab.acts("lost") == []
+
+
+@pytest.mark.parametrize("patient", [False, True])
+def test_what_another_site_advertises_as_well_is_looked_for_there_at_once_when_its_site_is_gone(
+    tmp_path: Path, patient: bool
+) -> None:
+    """As over a link between two hosts that is cut: the one that is left can start the component as well."""
+    lab = Lab(tmp_path)
+    lab.site("astrid", *TASK)
+    gone = lab.site("attic", "tracker")
+    for name in (*TASK, "tracker"):
+        lab.component(name)
+    living_room(lab, "1", lambda node: lab.component("tracker"))
+    agent = lab.agent(patient=patient)
+    assert lab.running(agent)
+    for one in (gone, "tracker"):
+        lab.crash(one)
+    assert lab.until(lambda: iri("person-tracker") in agent.state.lost, 1.0)
+    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, 1.0)
+    assert lab.active() == TASK | {"tracker"}
