@@ -217,7 +217,11 @@ def _examined(name: str, octets: bytes) -> tuple[dict[str, Any], dict[tuple[str,
         body = tomllib.loads(text)
     except RecursionError:
         return {}, {}, [Diagnostic(name, 1, 1, "SC-P01", "Not TOML that can be read: brackets in brackets.")]
-    except ValueError as error:  # of TOML, or of UTF-8
+    except UnicodeDecodeError as error:
+        before = octets[: error.start].decode().removeprefix("\ufeff").split("\n")
+        wrong = f"Not TOML: this is not UTF-8: the byte 0x{octets[error.start]:02X} cannot stand here."
+        return {}, {}, [Diagnostic(name, len(before), len(before[-1]) + 1, "SC-P01", wrong)]
+    except ValueError as error:
         return {}, {}, [_not_toml(name, octets, str(error))]
     called = {word: key for word, key in OTHER_WORDS.items() if word in body and key not in body}
     body = {called.get(key, key): value for key, value in body.items()}
@@ -245,6 +249,8 @@ def _wrong(body: Mapping[str, Any]) -> Iterator[tuple[tuple[str, ...], str, str]
     for key, value in body.items():
         if key == BIND:
             yield from _wrong_bindings(value)
+        elif key in OTHER_WORDS:
+            yield (key,), "SC-P02", f"The key {key!r} is another word for {OTHER_WORDS[key]!r}; give one of them."
         elif key not in PROJECT_KEYS:
             yield (key,), "SC-P02", f"There is no key {key!r}; the keys are {', '.join([*PROJECT_KEYS, BIND])}."
         elif wrong := PROJECT_KEYS[key].wrong(value):

@@ -78,8 +78,16 @@ def test_a_key_may_be_called_as_the_library_calls_it(tmp_path: Path, monkeypatch
     project = read_project(path)
     assert project.values == {"ecology": "home", "ontology": [Path("a.ttl")], "connect": ["tcp/10.0.0.2:7447"]}
     assert project.place("ontology") == f"{PROJECT_FILE}:2"
-    ((line, _, code, _),) = problems('ontology = "."\nontologies = "."\n', tmp_path)
+    ((line, _, code, said),) = problems('ontology = "."\nontologies = "."\n', tmp_path)
     assert (line, code) == (2, "SC-P02")
+    assert said == "The key 'ontologies' is another word for 'ontology'; give one of them."
+
+
+def test_a_byte_that_is_no_utf_8_is_named_where_it_stands(tmp_path: Path) -> None:
+    octets = '\ufeffsteps = 1\necology = "café"\n'.encode().replace("é".encode(), b"\xe9")
+    (problem,) = project_problems("p", octets, tmp_path)
+    assert (problem.line, problem.column, problem.code) == (2, 15, "SC-P01")
+    assert problem.message == "Not TOML: this is not UTF-8: the byte 0xE9 cannot stand here."
 
 
 def test_the_nearest_file_upward_counts(tmp_path: Path) -> None:
