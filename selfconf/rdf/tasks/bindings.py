@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Container, Iterable, Iterator, Mapping
-from functools import partial
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from functools import cached_property, partial
+from itertools import chain
 
 import pyoxigraph as ox
 
@@ -149,9 +150,10 @@ def complete(given: TaskDocument, later: Container[str] = ()) -> TaskDocument:
     """
     task, document = given.task, given.document
     bindings = dict(task.bindings)
+    rigid = _RigidPlaces(given)
     for parameter in task.template.parameters:
         if parameter.iri not in bindings:
-            if parameter.name in later and _rigid(given, parameter) is None:
+            if parameter.name in later and rigid.first(parameter) is None:
                 bindings |= {} if parameter.in_shape else {parameter.iri: parameter.iri}
                 continue
             if parameter.default is not None:
@@ -161,7 +163,7 @@ def complete(given: TaskDocument, later: Container[str] = ()) -> TaskDocument:
                     f"the parameter {parameter.name!r} needs a value; give it with {binding(parameter.name)}",
                     parameter=parameter.name,
                 )
-            elif place := _rigid(given, parameter):
+            elif place := rigid.first(parameter):
                 raise BindingError(
                     f"the parameter {parameter.name!r} cannot be left free, for it stands in {place}; "
                     f"give it a value with {binding(parameter.name)}",
@@ -257,30 +259,47 @@ def _with_values(template: Template, bindings: Mapping[IRI, Term]) -> Template:
     return replace(template, roles=tuple(roles), cost=cost)
 
 
-def _rigid(given: TaskDocument, parameter: Parameter) -> str | None:
-    """The property by which a parameter stands where no value is searched, as it is written; None if there is none.
+class _RigidPlaces:
+    """Where the parameters of a task stand that no value is searched for, gathered once for all of them.
 
     These are those properties of a role's shape that ask for a literal, paths, lists of languages and of properties,
     `sc:recruits`, the types of what roles set, and the properties that a cost counts; and those that ask for a name,
     where the parameter lists no values.
     """
-    document, template = given.document, given.template
-    naming = frozenset[IRI]() if document.values(parameter.iri, SH["in"]) else _NAMING
-    if any(term.property == parameter.iri for level in template.cost for term in level):
-        return "sc:property"
-    for role in template.roles:
-        if any(setting.type == parameter.iri for setting in role.settings):
-            return "sc:parameterType"
-        for predicate, value in shape_statements(document, role.iri):
-            if predicate in LITERAL | naming and value == parameter.iri:
-                return f"sh:{predicate.short}"
-            if predicate in _PATHS | _LISTS and parameter.iri in _steps(document, value):
-                return f"sh:{predicate.short}"
-        if any(
-            mentions(document, shape, frozenset((parameter.iri,))) for shape in document.values(role.iri, SC.recruits)
-        ):
-            return "sc:recruits"
-    return None
+
+    def __init__(self, given: TaskDocument) -> None:
+        self._given = given
+
+    def first(self, parameter: Parameter) -> str | None:
+        """Return the first property by which a parameter stands so, as it is written; None if there is none."""
+        listed = bool(self._given.document.values(parameter.iri, SH["in"]))
+        places = self._places.get(parameter.iri, ())
+        return next((f"{prefix}:{one.short}" for prefix, one in places if not (listed and one in _NAMING)), None)
+
+    @cached_property
+    def _places(self) -> Mapping[Term, Sequence[tuple[str, IRI]]]:
+        """For each parameter the properties by which it stands so, in order, each with its prefix."""
+        document, template = self._given.document, self._given.template
+        found: dict[Term, list[tuple[str, IRI]]] = {parameter.iri: [] for parameter in template.parameters}
+
+        def note(value: Term, prefix: str, place: IRI) -> None:
+            if value in found:
+                found[value].append((prefix, place))
+
+        for term in chain.from_iterable(template.cost):
+            note(term.property, "sc", SC.property)
+        for role in template.roles:
+            for setting in role.settings:
+                note(setting.type, "sc", SC.parameterType)
+            for predicate, value in shape_statements(document, role.iri):
+                if predicate in LITERAL | _NAMING:
+                    note(value, "sh", predicate)
+                for step in _steps(document, value) if predicate in _PATHS | _LISTS else ():
+                    note(step, "sh", predicate)
+            for shape in document.values(role.iri, SC.recruits):
+                for _, value in () if isinstance(shape, Literal) else shape_statements(document, shape):
+                    note(value, "sc", SC.recruits)
+        return found
 
 
 def _steps(document: Document, path: Term) -> set[Term]:

@@ -398,3 +398,25 @@ def test_values_that_make_a_role_set_one_type_twice_are_refused() -> None:
     task = templates.read_task(turtle.parse(PREFIXES + SETTING, "t.ttl"))
     with pytest.raises(BindingError, match=r"the role <.*#r> sets <.*#G> to 2 different values"):
         bindings.complete(bindings.bind(task, [("k", ":G")]))
+
+
+def test_the_shape_of_each_role_is_read_once_to_see_which_of_many_parameters_may_stay_free(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    numbers = range(20)
+    listed = " ".join(f":r{k}" for k in numbers)
+    lines = [f":t a sc:Template ; sc:roles ( {listed} ) ; sc:parameter {', '.join(f':p{k}' for k in numbers)} ."]
+    for k in numbers:
+        lines.append(f':p{k} a sc:Parameter ; sc:name "p{k}" .')
+        lines.append(f":r{k} a sc:Role ; sh:class :C ; sh:property [ sh:path :on ; sh:hasValue :p{k} ] .")
+    given = templates.read_task(turtle.parse(PREFIXES + "\n".join(lines), "t.ttl"))
+    read: list[object] = []
+    statements = bindings.shape_statements
+
+    def counted(document: turtle.Document, role: turtle.Node) -> object:
+        read.append(role)
+        return statements(document, role)
+
+    monkeypatch.setattr(bindings, "shape_statements", counted)
+    assert not bindings.complete(given).task.bindings
+    assert len(read) == len(numbers)
