@@ -6,7 +6,10 @@ import argparse
 import logging
 import os
 import sys
+import threading
+import time
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import NoReturn
 
@@ -23,6 +26,8 @@ HUNG_ENDS = 0.2
 """Seconds from the FAIL of code that hangs to the end of its process, if a site started it and can start it again."""
 TIME_TO_END = 2.5
 """Seconds that a program may take to end on a signal; code that does not return is not waited for longer."""
+THREADS_GO_ON = 0.5
+"""Seconds that threads which code of the components has started may go on after the main thread has ended."""
 HUNG_EXIT_CODE = 70
 """The exit code of a program that was ended because its code hung: EX_SOFTWARE of sysexits.h."""
 
@@ -30,6 +35,8 @@ HUNG_EXIT_CODE = 70
 @options_named()
 def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> NoReturn:
     """Run components as one program until SIGINT, SIGTERM or SIGHUP; then exit, with 2 if it cannot run.
+
+    Threads that the components have started are not waited for.
 
     Arguments that are not options of selfconf are the program's own. The ecology is taken from `--ecology` and
     `--connect`, else from `SELFCONF_ECOLOGY` and `SELFCONF_CONNECT` (as set by a site that starts a dormant
@@ -120,3 +127,30 @@ def run_until_ended(host: Host) -> None:
         host.run(ending)
     finally:
         host.close()
+        _leave_threads_behind(_exit_code(sys.exc_info()[1]))
+
+
+def _exit_code(error: BaseException | None) -> int:
+    """The exit code of a program that ends by what was raised, if anything was."""
+    if isinstance(error, SystemExit):
+        return error.code if isinstance(error.code, int) else int(error.code is not None)
+    if error is None:
+        return 0
+    return 2 if isinstance(error, SelfconfError) else 1
+
+
+def _leave_threads_behind(code: int) -> None:
+    """End the process with a code soon after its main thread has ended, though threads go on that its code has started.
+
+    Python would wait for them without end, and they may turn a motor that no configurator can stop any more.
+    """
+
+    def end() -> None:
+        threading.main_thread().join()
+        time.sleep(THREADS_GO_ON)  # for no condition: without such threads the process has ended before
+        for stream in (sys.stdout, sys.stderr):
+            with suppress(Exception):  # there may be none, or nothing that reads it
+                stream.flush()
+        os._exit(code)
+
+    threading.Thread(target=end, daemon=True, name="end").start()

@@ -106,7 +106,7 @@ def test_help_tells_what_the_component_is(capsys: pytest.CaptureFixture[str]) ->
 # Programs as processes of their own.
 
 PROGRAM = '''
-import sys, time
+import sys, threading, time
 from pathlib import Path
 from selfconf.sdk import Component, main
 
@@ -116,9 +116,13 @@ class Lamp(Component):
     advertisement = Path(__file__).parent / "lamp.ttl"
 
     def started(self):
+        if "thread" in sys.argv:
+            threading.Thread(target=time.sleep, args=(60.0,)).start()
         self.every(0.01, self.shine)
 
     def shine(self):
+        if "leave" in sys.argv:
+            sys.exit(3)
         if "hang" in sys.argv:
             print("hanging", flush=True)
             while True:
@@ -214,6 +218,21 @@ def test_a_program_ends_on_a_signal_with_its_component_at_rest(programs: Program
     process.send_signal(signal.SIGTERM)
     said, _ = process.communicate(timeout=PATIENCE)
     assert (process.returncode, said) == (0, "at rest\n")
+
+
+@pytest.mark.process
+def test_a_program_ends_on_a_signal_though_its_code_has_started_a_thread_that_goes_on(programs: Programs) -> None:
+    process = programs.acting("thread")
+    process.send_signal(signal.SIGTERM)
+    said, _ = process.communicate(timeout=PATIENCE)
+    assert (process.returncode, said) == (0, "at rest\n")
+
+
+@pytest.mark.process
+def test_a_program_ends_by_its_code_though_that_has_started_a_thread_that_goes_on(programs: Programs) -> None:
+    process = programs.acting("thread", "leave")
+    said, _ = process.communicate(timeout=PATIENCE)
+    assert (process.returncode, said) == (3, "at rest\n")
 
 
 @pytest.mark.process
