@@ -2,9 +2,9 @@
 
 `ValueTest` is a constraint on one value, `PairTest` one on the values of two properties, by one of `PAIRS`; `compiled`
 makes tests of the constraints that can be; two `exclude` each other if no value passes both, and one may be
-`passed_by_none` at all. `passes_all` asks for a value that passes several. `misfit`, `unfit`, `of_values`,
-`said_twice`, `said_alone`, `LISTS`, `DESCRIBED`, `LITERAL`, `ONLY_WITH_A_PATH`, `STATED_ONCE`, `BESIDES`, `COUNTS` and
-`ILL_FORMED` say what may stand as a value of SHACL's own properties, `PATH_FORMS` are those of paths.
+`passed_by_none` at all. `passes_all` asks for a value that passes several. `misfit`, `unfit`, `no_pattern`,
+`of_values`, `said_twice`, `said_alone`, `LISTS`, `DESCRIBED`, `LITERAL`, `ONLY_WITH_A_PATH`, `STATED_ONCE`, `BESIDES`,
+`COUNTS` and `ILL_FORMED` say what may stand as a value of SHACL's own properties, `PATH_FORMS` are those of paths.
 `component_parameters` are the predicates by which a document constrains by components of its own, `shapes_behind` are
 the shapes to which a statement leads, and `refused_queries` the queries of a constraint that are not asked. `pattern`
 is a regular expression that a text cannot make expensive (`Pattern`); where that cannot be, it is `MatchTooCostly`.
@@ -33,6 +33,7 @@ from selfconf.rdf.shacl.shape_syntax import (
     STATED_ONCE,
     component_parameters,
     misfit,
+    no_pattern,
     of_values,
     said_alone,
     said_twice,
@@ -60,6 +61,7 @@ __all__ = [
     "component_parameters",
     "exclude",
     "misfit",
+    "no_pattern",
     "of_values",
     "passed_by_none",
     "passes_all",

@@ -101,13 +101,26 @@ def misfit(document: Document, triples: Iterable[Triple], variables: frozenset[T
         if value in variables and predicate not in LISTS | DESCRIBED:
             continue
         if predicate in WANTED and not _fits(document, triple, variables):
-            return triple, unfit(predicate).rstrip(".")
+            fault = _fault_of_pattern(document, shape, value) if predicate == SH.pattern else None
+            return triple, no_pattern(fault) if fault else unfit(predicate).rstrip(".")
         lacking = _lacking(document, shape, predicate)
         if lacking is not None:
             return triple, lacking
         if predicate in STATED_ONCE and value != document.value(shape, predicate):
             return triple, said_twice(predicate)
     return None
+
+
+def no_pattern(fault: str) -> str:
+    """A sentence, without its full stop, about a value of `sh:pattern` with a fault (`pattern_fault`)."""
+    return f"This is no regular expression: {fault}"
+
+
+def _fault_of_pattern(document: Document, shape: Node, value: Term) -> str | None:
+    """Why a text, with the flags that its shape states, is no regular expression; None if it is one, or no text."""
+    if not isinstance(value, Literal) or value.datatype != XSD.string:
+        return None
+    return pattern_fault(value.lexical, str(document.value(shape, SH.flags) or ""))
 
 
 def of_values(predicate: IRI) -> str:
@@ -153,8 +166,8 @@ def _fits(document: Document, triple: Triple, variables: frozenset[Term]) -> boo
     if predicate == SH.nodeKind:
         return value in NODE_KINDS
     if predicate == SH.pattern:
-        flags = str(document.value(shape, SH.flags) or "")
-        return literal is not None and literal.datatype == XSD.string and pattern_fault(literal.lexical, flags) is None
+        text = literal is not None and literal.datatype == XSD.string
+        return text and _fault_of_pattern(document, shape, value) is None
     return literal is None and _fitting_node(document, predicate, value)
 
 

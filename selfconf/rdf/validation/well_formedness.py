@@ -40,6 +40,7 @@ from selfconf.rdf.shacl import (
     PATH_FORMS,
     STATED_ONCE,
     MatchTooCostly,
+    no_pattern,
     of_values,
     pattern_fault,
     refused_queries,
@@ -287,7 +288,7 @@ def _patterns(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
         fault = pattern_fault(str(pattern) if isinstance(pattern, Literal) else "", flags)
         if fault is not None:
             offset = positions.triples[shape, SH.pattern, pattern].object
-            yield at(positions, offset, "SC-T13", f"This is no regular expression: {fault}.")
+            yield at(positions, offset, "SC-T13", f"{no_pattern(fault)}.")
 
 
 def _queries(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:

@@ -27,8 +27,6 @@ from tests.lab import PREFIXES, iri
         ("sh:class [ ]", "class"),
         ("sh:nodeKind :Kind", "nodeKind"),
         ("sh:property [ sh:class :A ]", "property"),
-        ("sh:pattern '('", "pattern"),
-        ("sh:pattern 'a{99999999999}'", "pattern"),
         ("sh:pattern 3", "pattern"),
         ("sh:pattern :p", "pattern"),
         ("sh:or ( )", "or"),
@@ -71,6 +69,8 @@ def test_a_value_that_cannot_stand_there_is_named_with_its_statement(said: str, 
         ("sh:not [ sh:in ( 1 2 ) ; sh:in ( 1 ) ]", "A shape has one sh:in at most"),
         ("sh:path :a ; sh:maxInclusive 0,5", "A shape has one sh:maxInclusive at most"),
         ("sh:path :a ; sh:pattern 'a', 'b'", "A shape has one sh:pattern at most"),
+        ("sh:pattern '('", "This is no regular expression: missing ), unterminated subpattern at position 0"),
+        ("sh:pattern 'a{99999999999}'", "This is no regular expression: it repeats something too often"),
     ],
 )
 def test_what_a_shape_has_to_say_beside_a_statement_is_named(said: str, sentence: str) -> None:
