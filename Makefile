@@ -38,7 +38,7 @@ OR_ALONE = || $(BIN)/python -m tests.harness.alone $(REPORT)
 test: $(VENV)/with-dev
 	$(PYTEST) -m 'not thorough' $(OR_ALONE)
 
-# The tests that play more seeds of what others play few of, or run a benchmark for a moment.
+# The tests that show by more or larger examples what others show by less, or run a benchmark for a moment.
 thorough: $(VENV)/with-dev
 	$(PYTEST) -m thorough $$(grep -lrE 'harness.effort import .*(batches|thorough)' tests --include='test_*.py') $(OR_ALONE)
 

@@ -15,6 +15,7 @@ from selfconf.api.file_checks import Remembered
 from selfconf.api.validation import check
 from selfconf.model.diagnostic import Diagnostic
 from selfconf.rdf.validation.checking import FileChecker, UnclearedFile
+from tests.harness.effort import thorough
 
 
 def test_a_remembered_report_is_the_same_and_is_kept_in_the_cache_of_the_user(
@@ -70,6 +71,7 @@ print(len(forked))
 """Validates files in eight processes, in a program with a handler of SIGTERM, which these inherit."""
 
 
+@thorough
 @pytest.mark.slow
 @pytest.mark.parametrize(("threads", "forks"), [("none", 8), ("threads", 0)])
 def test_processes_give_the_verdicts_of_one_and_are_forked_where_there_are_no_threads(

@@ -29,7 +29,7 @@ from selfconf.search.additions import asking_for
 from selfconf.search.problem import Problem
 from selfconf.search.relaxations.relaxations import with_relaxations
 from selfconf.search.relaxations.relaxed_problem import relaxed_by
-from tests.harness.effort import NIGHTLY
+from tests.harness.effort import NIGHTLY, thorough
 from tests.search.chance import Chance, by_chance
 from tests.search.possibility import possible
 from tests.search.recruiting.test_recruiting import Players, Recruit
@@ -111,6 +111,7 @@ def outcome(strategy: Strategy, problem: Problem, running: Configuration | None 
     return last
 
 
+@thorough
 @pytest.mark.slow
 @given(ecologies(), st.data())
 @agreement(1.0 if NIGHTLY else 500 / 75)  # 500 for every push

@@ -17,7 +17,7 @@ from typing import Any
 import pytest
 
 from selfconf.cli.main import command, parser
-from tests.harness.effort import at_night
+from tests.harness.effort import at_night, thorough
 
 pytestmark = pytest.mark.process
 
@@ -108,6 +108,7 @@ def validated(tmp_path_factory: pytest.TempPathFactory) -> Validated:
     return ask
 
 
+@thorough
 def test_the_action_installs_the_checkout_it_lies_in(repository: Path, offline: dict[str, str]) -> None:
     shutil.rmtree(repository.parent / "runner")
     (repository / "my robots" / "tuner.ttl").write_text(WRONG)

@@ -4,8 +4,9 @@
 is two fifths of it (`make test`), or three twentieths where every example is solved several times, by enumeration
 too, so that the tests end in time on two processors. The examples of a usual or quick run are the same each time.
 
-Tests that are marked as thorough show by more seeds what other tests show by few, or run a benchmark for a moment:
-`make test` leaves them out, `make thorough` runs them alone, and `make check` both.
+Tests that are marked as thorough take seconds to show by more examples, larger ones or a whole demo what other tests
+show by less, or run a benchmark for a moment: `make test` leaves them out, `make thorough` runs them alone, and `make
+check` both.
 """
 
 from __future__ import annotations

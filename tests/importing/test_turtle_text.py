@@ -12,7 +12,7 @@ from selfconf.importing.turtle_text import WIDTH, turtle
 from selfconf.model.term import IRI, BlankNode, Literal
 from selfconf.rdf.turtle import parse
 from selfconf.rdf.vocabulary import RDF, ROB, SC, TYPE, XSD
-from tests.harness.effort import examples
+from tests.harness.effort import examples, thorough
 
 LAMP = IRI("urn:x:lamp")
 
@@ -84,6 +84,7 @@ values = st.recursive(
 )
 
 
+@thorough
 @settings(max_examples=examples(60), deadline=None)
 @given(st.lists(st.tuples(iris, values), min_size=1, max_size=4))
 def test_what_is_written_is_read_as_what_was_said(pairs: list[tuple[IRI, object]]) -> None:

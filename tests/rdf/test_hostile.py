@@ -41,6 +41,7 @@ from selfconf.rdf.validation.checking import SourceText, validate_texts
 from selfconf.sdk import operations, payloads
 from selfconf.sdk.inputs import signal_order
 from selfconf.sdk.runtime import runtime
+from tests.harness.effort import thorough
 from tests.hostile_words import HONEST, KINDS, stranger
 from tests.hostile_words import TEMPLATE as TEMPLATE_FOR_STRANGERS
 
@@ -201,6 +202,7 @@ def processor_seconds(*advertisements: str) -> tuple[list[list[str]], list[str],
     return eligible, [one.component for one in found.inquiry.left_out], seconds
 
 
+@thorough
 @pytest.mark.slow
 def test_a_thousand_hostile_advertisements_change_no_answer_and_cost_seconds_at_most() -> None:
     strangers = [stranger(kind, number) for kind in KINDS for number in range(100)]

@@ -11,7 +11,7 @@ import pytest
 import selfconf
 from selfconf.model.refusal import Refusal
 from selfconf.model.relaxation import AcceptNearMiss, AddComponents, AddInteraction, AskForFewer, LetRecruit, Relaxation
-from tests.harness.effort import examples
+from tests.harness.effort import examples, thorough
 
 PREFIXES = """\
 @prefix sc: <https://w3id.org/selfconf#> .
@@ -170,6 +170,7 @@ def followed(
     return template, about, new
 
 
+@thorough
 @pytest.mark.slow
 def test_a_repair_that_is_followed_as_it_is_worded_works(tmp_path: Path) -> None:
     rng = random.Random(14)

@@ -16,7 +16,7 @@ from selfconf.search import explain, reconfigure
 from selfconf.search.problem import Problem
 from selfconf.search.recruiting import recruited
 from selfconf.search.strategies import first
-from tests.harness.effort import NIGHTLY
+from tests.harness.effort import NIGHTLY, thorough
 from tests.search.chance import Chance, with_chance
 from tests.search.oracle import World
 from tests.search.recruiting.test_recruiting import with_recruits
@@ -91,6 +91,7 @@ def test_clause_learning_finds_the_configuration_that_depth_first_search_finds(d
     assert isinstance(answer, Refusal) or answer.proved
 
 
+@thorough
 @pytest.mark.slow
 @pytest.mark.parametrize("aided", [False, True])
 def test_what_is_called_the_nearest_is_proved_and_what_is_not_says_so(

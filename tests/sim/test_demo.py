@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 
 from sim.demo import DemoOptions, run
-from tests.harness.effort import at_night
+from tests.harness.effort import at_night, thorough
 from tests.harness.yardstick import Yardstick
 from tests.serve.chromium import CHROMIUM, Chromium, Page
 
@@ -161,6 +161,7 @@ def demo(tmp_path: Path) -> Iterator[list[Demo]]:
             one.process.communicate(timeout=PATIENCE)
 
 
+@thorough
 def test_astrid_arrives_and_pictures_are_drawn(tmp_path: Path, demo: list[Demo]) -> None:
     demo.append(Demo(tmp_path, "--speed", "max", "--seed", "3", "--pictures", "draft"))
     assert demo[0].end() == 0, demo[0].said

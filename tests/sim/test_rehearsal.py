@@ -13,7 +13,7 @@ pytest.importorskip("pybullet", reason="PyBullet is not installed: install the e
 from sim.home.apartment import Apartment
 from sim.home.floor_plan import Block
 from sim.rehearsal import Log, rehearse
-from tests.harness.effort import NIGHTLY, at_night
+from tests.harness.effort import NIGHTLY, at_night, thorough
 
 pytestmark = [pytest.mark.sim, pytest.mark.slow]
 
@@ -52,6 +52,7 @@ def test_she_stands_still_while_nobody_sends_poses(logs: Callable[[int], Log]) -
     assert waiting[-1].distance(waiting[-8]) < 0.005
 
 
+@thorough
 def test_an_obstacle_in_her_way_is_avoided(apartment: Apartment, logs: Callable[[int], Log]) -> None:
     crate = Block("crate", 2.2, 1.33, 0.0, 0.4, 0.3, 0.3, 0.6, ORANGE)
     log = rehearse(apartment, seed=1, obstacles=[crate])

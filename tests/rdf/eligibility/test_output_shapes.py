@@ -19,7 +19,7 @@ from selfconf.rdf.pyshacl_corrections import only_ordered
 from selfconf.rdf.rdflib_terms import rdflib_term, to_rdflib
 from selfconf.rdf.turtle import Document, parse
 from selfconf.rdf.vocabulary import SC, SH
-from tests.harness.effort import examples
+from tests.harness.effort import examples, thorough
 from tests.lab import PREFIXES
 
 OUTPUTS = """
@@ -96,6 +96,7 @@ def test_annotations_are_no_reason_to_ask_pyshacl(said: str) -> None:
     assert OutputShape(accepted_shape(document, shape), NOTHING_ABOVE)._tests.complete
 
 
+@thorough
 @settings(max_examples=examples(150), deadline=None)
 @given(SHAPES, HIERARCHIES)
 def test_an_output_conforms_where_pyshacl_says_so(text: str, hierarchy: Hierarchy) -> None:

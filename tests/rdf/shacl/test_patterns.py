@@ -10,6 +10,7 @@ from random import Random
 import pytest
 
 from selfconf.rdf.shacl.patterns import LONGEST_TEXT, PATTERN_SECONDS, MatchTooCostly, Pattern, pattern_fault
+from tests.harness.effort import thorough
 
 LETTERS = "a" * 60
 SLOW = [
@@ -59,6 +60,7 @@ def test_beyond_regular_languages_a_harmless_text_is_decided_whatever_came_befor
     assert not pattern.finds("password1 and more")
 
 
+@thorough
 def test_a_text_that_leads_to_ever_more_states_costs_little_and_the_others_are_decided() -> None:
     pattern = Pattern("a([ab]){900}c", 0)  # of which `re` needs fifteen times what it may take
     letters = Random(1)

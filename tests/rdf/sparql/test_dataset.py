@@ -11,6 +11,7 @@ from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.sparql.dataset import Dataset
 from selfconf.rdf.turtle import document as turtle
 from selfconf.termination import resident_memory
+from tests.harness.effort import thorough
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri
 
 
@@ -51,6 +52,7 @@ def test_what_several_advertisements_say_is_in_the_union_once() -> None:
     assert len(values(dataset, f"SELECT ?c WHERE {{ ?c <{iri('on')}> ?base }}")) == 2
 
 
+@thorough
 def test_what_is_replaced_again_and_again_takes_no_memory() -> None:
     """A server replaces what is deployed for months; without a new store this took 30 MB, and longer each time."""
     dataset = Dataset()

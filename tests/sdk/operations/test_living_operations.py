@@ -11,6 +11,7 @@ from selfconf.model.profile import CALL_MARK
 from selfconf.protocol.messages import Cause, Reserve, Verdict
 from selfconf.sdk.component import CallStatus
 from selfconf.sdk.operations import MOST_PAYLOAD
+from tests.harness.effort import thorough
 from tests.sdk.living import PATIENCE, LivingStage, until
 from tests.sdk.operations.photographs import (
     ALBUM,
@@ -47,6 +48,7 @@ def connected(living: LivingStage, camera: Camera, album: Album, together: bool 
     assert (served[0].verdict, held[0].verdict, acting[0].verdict) == (Verdict.DONE,) * 3
 
 
+@thorough
 @pytest.mark.parametrize("together", [False, True])
 def test_a_mebibyte_goes_there_and_back_on_a_real_network(living: LivingStage, together: bool) -> None:
     album, photo = Album(), bytes(range(256)) * (MOST_PAYLOAD // 256)

@@ -26,7 +26,7 @@ from selfconf.search.engines.ordered_decisions import OrderedDecisions
 from selfconf.search.engines.rival import Rival
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import pruned, reduced
-from tests.harness.effort import examples
+from tests.harness.effort import examples, thorough
 from tests.search.comparison import least_numbers, numbers
 from tests.search.worlds import agreement, problems, rivalries
 
@@ -42,6 +42,7 @@ def test_solvers_that_take_turns_find_the_least_solution(problem: Problem) -> No
         assert numbers(least_by_clauses(reduced(problem), Budget(100_000))) == least_numbers(problem)
 
 
+@thorough
 @pytest.mark.process
 @given(st.one_of(problems(), rivalries()))
 @settings(agreement(0.1), max_examples=examples(30), suppress_health_check=list(HealthCheck))

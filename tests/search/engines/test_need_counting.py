@@ -16,6 +16,7 @@ from selfconf.search.engines import Undersupply, counted_needs, first_solution, 
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import LazyReduction, ReducedProblem, pruned, reduced
 from selfconf.search.strategies import first, solution
+from tests.harness.effort import thorough
 from tests.search.comparison import least_numbers, numbers
 from tests.search.oracle import World
 from tests.search.worlds import agreement, problems
@@ -42,6 +43,7 @@ def small_hubs(draw: st.DrawFn) -> Problem:
     return hubs(signals, slots, 1, idle, draw(st.integers(0, 10_000)), number, draw(st.sampled_from([0.0, 0.3])))
 
 
+@thorough
 @given(st.one_of(small_hubs(), problems()))
 @agreement()
 def test_what_is_removed_is_in_no_solution(problem: Problem) -> None:
@@ -61,6 +63,7 @@ def test_what_is_removed_is_in_no_solution(problem: Problem) -> None:
         }
 
 
+@thorough
 @given(st.one_of(small_hubs(), problems(plain=True)))
 @agreement(0.5)
 def test_a_search_that_counts_finds_the_least_solution(problem: Problem) -> None:

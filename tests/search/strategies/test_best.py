@@ -22,7 +22,7 @@ from selfconf.search import explain
 from selfconf.search.extension import solved
 from selfconf.search.problem import Problem
 from selfconf.search.strategies import best, first
-from tests.harness.effort import NIGHTLY
+from tests.harness.effort import NIGHTLY, thorough
 from tests.search.chance import Chance, by_chance, with_chance
 from tests.search.oracle import Players, World
 from tests.search.without_solvers import without_solvers
@@ -140,6 +140,7 @@ def test_clause_learning_finds_the_best_that_branch_and_bound_finds(problem: Pro
     assert not isinstance(expected, Optimum) or answer == expected
 
 
+@thorough
 @pytest.mark.slow
 @pytest.mark.parametrize("aided", [False, True])
 def test_what_is_found_in_few_steps_has_a_true_bound(

@@ -15,7 +15,7 @@ from selfconf.rdf.turtle.document import parse
 from selfconf.rdf.validation.lints.contradictions import contradictions
 from selfconf.rdf.validation.lints.normal_form import NormalForm, ShapeSource
 from selfconf.rdf.vocabulary import SC
-from tests.harness.effort import examples
+from tests.harness.effort import examples, thorough
 from tests.lab import PREFIXES, iri
 from tests.rdf.eligibility.test_compiler import CLASSES, COMPONENTS, CONSTRAINTS, PATHS, TERMS, ecology, predicate
 from tests.shipped import shipped_shapes
@@ -70,6 +70,7 @@ PARTS = st.one_of(
 ROLES = st.lists(PARTS, min_size=2, max_size=5, unique=True).map(" ; ".join)
 
 
+@thorough
 @settings(max_examples=examples(300), deadline=None)
 @given(ROLES, COMPONENTS)
 @example(

@@ -8,6 +8,7 @@ from selfconf import library
 from selfconf.model.codes import PREAMBLE
 from selfconf.model.diagnostic import Diagnostic, Severity
 from selfconf.rdf.validation.checking import SourceText, validate_texts
+from tests.harness.effort import thorough
 
 HEAD = PREAMBLE.count("\n")
 SHAPES = [SourceText(path.name, path.read_bytes()) for path in library.shapes()]
@@ -333,6 +334,7 @@ def test_what_a_shape_asks_of_a_longer_path_is_left_alone() -> None:
     assert lints(f"{TEMPLATE}:r sh:property [ {asked} ] .") == []
 
 
+@thorough
 def test_a_list_of_thousands_may_be_asked_for() -> None:
     many = " ".join(f":p{number}" for number in range(3000))
     assert only(f"{TEMPLATE}:r sh:property [ sh:path rob:place ; sh:in ( {many} 'kitchen' ) ] .").code == "SC-L07"
