@@ -113,15 +113,16 @@ def worse_than_need_be(history: History) -> Iterator[str]:
 
 
 SAID_OUTSIDE = 0.05
-"""Seconds from when a composite runs again inside until those whom it feeds have been told what they are to follow: it
-says so to their task, which calls them, and asks again where a message is lost."""
-STEPS = (
-    Invariant(
-        "an upgrade starves nobody",
-        starves,
-        lambda history: SAID_OUTSIDE if history.script.ecology.composites else 0.0,
-    ),
-)
+"""Seconds from when a composite runs again inside until those whom it feeds have been told what they are to follow, on
+a quick network, where it says so once more if a message is lost."""
+
+
+def until_said_outside(history: History) -> float:
+    """How long that may take: the composite says so to its task, which asks it, is answered, and calls them."""
+    return max(SAID_OUTSIDE, 4 * history.script.faults.most_delay) if history.script.ecology.composites else 0.0
+
+
+STEPS = (Invariant("an upgrade starves nobody", starves, until_said_outside),)
 ENDS = (Invariant("the better is reached", worse_than_need_be),)
 
 
