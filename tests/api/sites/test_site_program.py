@@ -75,8 +75,9 @@ def test_a_site_does_not_begin_where_reading_would_not_end(home: Home, given: li
 
 @pytest.mark.process
 def test_a_site_says_where_nothing_answers_that_it_is_to_connect_to(home: Home) -> None:
-    site = home.selfconf("site", "ads", "--ecology", home.ecology, "--connect", "tcp/127.0.0.1:1")
-    assert home.until(lambda: "nothing answers at tcp/127.0.0.1:1 yet; this site goes on trying" in site.complaints)
+    nobody = f"{'tls' if 'SELFCONF_KEYS' in home.environment else 'tcp'}/127.0.0.1:1"
+    site = home.selfconf("site", "ads", "--ecology", home.ecology, "--connect", nobody)
+    assert home.until(lambda: f"nothing answers at {nobody} yet; this site goes on trying" in site.complaints)
     assert site.end(signal.SIGINT) == 0
 
 
