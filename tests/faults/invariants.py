@@ -148,7 +148,7 @@ def obeys_two(history: History) -> Iterator[str]:
     """No component acts for two tasks that disagree."""
     for life in acting(history):
         holds = [hold for hold in life.runtime.activation.holds if hold.active]
-        if len(holds) > 1 and len({str(hold.wants) for hold in holds}) > 1:
+        if any(hold.wants != holds[0].wants for hold in holds):
             yield f"{life.name} {life.runtime.life} acts for tasks that disagree"
 
 
