@@ -16,7 +16,7 @@ from selfconf.composites import Composites
 from selfconf.composition.composer import Composer
 from selfconf.configurator.state import Phase, Policy
 from selfconf.deployment import RunRequest, TaskRunner
-from selfconf.deployment.run_reports import AT_LEISURE
+from selfconf.deployment.notices import AT_LEISURE
 from selfconf.model.profile import Profile
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.run_event import RunEvent

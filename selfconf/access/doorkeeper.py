@@ -27,7 +27,7 @@ from selfconf.access.principal import Principal, PrincipalKind
 from selfconf.access.refusal_reports import RefusalReports
 from selfconf.access.rules import AccessRules, rules_of
 from selfconf.access.shown_certificates import Process, ShownCertificates, holders
-from selfconf.bus.answering import answering
+from selfconf.bus.answers import answering
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Bus, Replies, Request
 from selfconf.bus.timer import Timer

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 
-from selfconf.bus.own_answers import own_answers
+from selfconf.bus.answers import own_answers
 from selfconf.bus.port import Bus, Replies
 from selfconf.model.configuration import Wants
 from selfconf.model.holder import Holder

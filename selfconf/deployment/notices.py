@@ -1,18 +1,24 @@
-"""What a configurator does and notices, sent to observers.
+"""What a configurator does and notices, as the listener of the run and observers hear it.
 
-Nothing of a run depends on it: a notice is made only while an observer listens, and the network may drop it, so that an
-observer that is slow, frozen or gone holds nothing up. The latest events are kept, for one that comes late or has found
-a gap in the sequence. How a run has ended is not dropped, as no configurator could be asked for it any more: that is
-one notice, which goes the way of the end of its life.
+The listener hears it when there is nothing more urgent to do. Nothing of a run depends on the observers: a notice is
+made only while one listens, and the network may drop it, so that an observer that is slow, frozen or gone holds nothing
+up. The latest events are kept, for one that comes late or has found a gap in the sequence. How a run has ended is not
+dropped, as no configurator could be asked for it any more: that is one notice, which goes the way of the end of its
+life.
 """
 
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
+from functools import partial
 
-from selfconf.bus.answering import answering
+from selfconf.bus.answers import answering
 from selfconf.bus.port import Bus, Request, Urgency
-from selfconf.model.run_event import RunEvent, TaskRefused, TaskStopped
+from selfconf.deployment.run_request import RunRequest
+from selfconf.model.immutable import replace
+from selfconf.model.refusal import Refusal
+from selfconf.model.run_event import AnyRunEvent, RunEvent, TaskRefused, TaskStopped, TaskWaiting
 from selfconf.protocol.codec import LARGEST, encode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Notice
@@ -20,6 +26,8 @@ from selfconf.render.run_events import event_body
 
 LATEST = 64
 """How many events are kept."""
+AT_LEISURE = 0.01
+"""Seconds by which what nothing waits for is delayed, so that it does not delay what something waits for."""
 
 
 class RunNotices:
@@ -75,3 +83,30 @@ class RunNotices:
             return notice
         short = {fact: body[fact] for fact in ("act", "time", "message")}
         return encode(Notice(self._name, sequence, self._task, short))
+
+
+class RunReports:
+    """Reports the events of one run to its listener, and to observers by its notices."""
+
+    def __init__(self, bus: Bus, request: RunRequest, notices: RunNotices, clock: Callable[[], float]) -> None:
+        self._bus, self._request, self._notices, self._clock = bus, request, notices, clock
+        self._untold: list[AnyRunEvent] = []
+
+    def note(self, event: AnyRunEvent) -> None:
+        """Note an event with its time, and tell it soon."""
+        if not self._untold:
+            self._bus.later(AT_LEISURE, self.tell)
+        self._untold.append(replace(event, time=self._clock()))
+
+    def tell(self) -> None:
+        """Tell now all that has happened; called in the thread of the bus."""
+        untold, self._untold = self._untold, []
+        for event in untold:
+            self._notices.put(event)
+            self._request.report(event)
+            if isinstance(event, TaskWaiting) and isinstance(event.refusal, Refusal):
+                self._request.explain(event.refusal, partial(self.explained, event))
+
+    def explained(self, event: TaskWaiting, refusal: Refusal) -> None:
+        """Tell observers what else was found out about an earlier event; may be called from any thread."""
+        self._bus.wake_up(lambda: self._notices.amend(event, replace(event, refusal=refusal)))

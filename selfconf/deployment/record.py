@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from selfconf.bus.answering import answering
+from selfconf.bus.answers import answering
 from selfconf.bus.port import Bus, Request, Urgency
 from selfconf.deployment.run_request import RunRequest, TaskIdentity
 from selfconf.model.configuration import Configuration

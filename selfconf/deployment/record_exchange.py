@@ -12,7 +12,7 @@ from collections.abc import Collection
 from functools import partial
 from typing import Protocol
 
-from selfconf.bus.answering import answering
+from selfconf.bus.answers import answering
 from selfconf.bus.port import Bus, Replies, Request, Sample, Urgency
 from selfconf.bus.timer import Timer
 from selfconf.deployment.task_folder import TaskFolder

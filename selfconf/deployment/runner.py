@@ -41,11 +41,10 @@ from selfconf.configurator import (
 from selfconf.deployment.components import TaskComponents
 from selfconf.deployment.improvement import Improvement
 from selfconf.deployment.lasting_losses import LastingLosses
-from selfconf.deployment.notices import RunNotices
+from selfconf.deployment.notices import RunNotices, RunReports
 from selfconf.deployment.readiness import Readiness
 from selfconf.deployment.record import DeploymentRecord
 from selfconf.deployment.retries import RetriesWhileRefused, RetriesWhileRunning
-from selfconf.deployment.run_reports import RunReports
 from selfconf.deployment.run_request import RunRequest, TaskIdentity
 from selfconf.deployment.task_context import TaskContext
 from selfconf.deployment.task_discovery import TaskDiscovery

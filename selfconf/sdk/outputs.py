@@ -14,7 +14,7 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from selfconf.bus.answering import answering
+from selfconf.bus.answers import answering
 from selfconf.bus.port import Bus, Publisher, Request, Undo, Urgency
 from selfconf.errors import ProgrammerError
 from selfconf.model.profile import Profile

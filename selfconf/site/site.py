@@ -12,8 +12,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import NamedTuple
 
-from selfconf.bus.answering import answering
-from selfconf.bus.own_answers import own_answers
+from selfconf.bus.answers import answering, own_answers
 from selfconf.bus.port import Bus, Replies, Request, Urgency
 from selfconf.errors import PeerError
 from selfconf.model.immutable import replace

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from selfconf.composites.inside_of_composite import STARTING_INSIDE
-from selfconf.deployment.run_reports import AT_LEISURE
+from selfconf.deployment.notices import AT_LEISURE
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import Apply, CallAnswer, Release, Reserve, StateOf, Verdict

@@ -11,7 +11,7 @@ from selfconf.composition import searches
 from selfconf.composition.composer import STANDBY, Composer
 from selfconf.composition.searches import Strategy
 from selfconf.configurator.state import Phase
-from selfconf.deployment.run_reports import AT_LEISURE
+from selfconf.deployment.notices import AT_LEISURE
 from selfconf.model.configuration import Configuration
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.optimum import Optimum

@@ -1,4 +1,7 @@
-"""A task that runs is ready for a failure: what may come next is found out once, and told to those that it concerns."""
+"""A task that runs is ready for a failure: what may come next is found out once, and told to those that it concerns.
+
+A first failure is gone through before: that changes nothing, and is what a failure would do.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,11 @@ from typing import Any
 
 import pytest
 
+from selfconf.configurator import Failed, Phase, State
+from selfconf.deployment import readiness
+from selfconf.deployment.readiness import TIMES, warm_up_failure
 from selfconf.model.term import IRI
+from selfconf.protocol.messages import Cause
 from tests.lab import Lab
 
 
@@ -88,3 +95,30 @@ def test_what_was_found_out_for_a_configuration_that_runs_no_more_is_told_to_non
     agent._readiness.prepare()
     lab.let_pass(1.0)
     assert told == []
+
+
+def test_a_failure_is_gone_through_and_the_task_runs_on(lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
+    heard: list[tuple[State, object]] = []
+    step = readiness.step
+
+    def stepped(state: State, event: object) -> object:
+        heard.append((state, event))
+        return step(state, event)  # type: ignore[arg-type]  # it is handed on
+
+    monkeypatch.setattr(readiness, "step", stepped)
+    agent = lab.agent()
+    assert lab.running(agent)
+    assert len(heard) >= TIMES
+    state, failed = heard[-1]
+    assert state.phase is Phase.RUNNING
+    assert isinstance(failed, Failed)
+    assert (failed.component in state.held, failed.cause) == (True, Cause.FAIL)
+    after, effects = step(state, failed)
+    assert failed.component in after.lost
+    assert effects
+    assert agent.state.lost == {}
+    assert agent.state.phase is Phase.RUNNING
+
+
+def test_nothing_is_gone_through_where_nothing_is_held() -> None:
+    warm_up_failure(State())

@@ -35,7 +35,7 @@ from selfconf.protocol.activation import Activation
 from selfconf.protocol.messages import Wire
 from selfconf.sdk.inputs import Inputs
 from selfconf.sdk.program import HUNG_ENDS
-from selfconf.sdk.runtime import ComponentRuntime, call_answers
+from selfconf.sdk.runtime import ComponentRuntime, control_calls
 from selfconf.site import Site
 from tests.faults.actions import Actions
 from tests.faults.harsh import KINDS as HARSH
@@ -217,7 +217,7 @@ class History:
             with (
                 mock.patch.object(ecology_view, "MANY_LIVES", 0 if self.script.large else ecology_view.MANY_LIVES),
                 # All components are in this process: what memory it takes is news to nobody.
-                mock.patch.object(call_answers, "resident_memory", nothing),
+                mock.patch.object(control_calls, "resident_memory", nothing),
             ):
                 self._play()
         except Exception:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from selfconf.bus.own_answers import own_answers
+from selfconf.bus.answers import own_answers
 from selfconf.bus.port import Replies
 from selfconf.discovery import Discovery
 from selfconf.model.term import IRI

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 from selfconf.api.living.component_terms import iri_or_local_name
 from selfconf.api.living.deployed import connected, deployed_body, passed_over
 from selfconf.api.synchronous_bus import SynchronousBus
-from selfconf.bus.own_answers import own_answers
+from selfconf.bus.answers import own_answers
 from selfconf.errors import PeerError, TurtleError
 from selfconf.model.term import IRI
 from selfconf.protocol.keys import Keys, configurator_of, task_name

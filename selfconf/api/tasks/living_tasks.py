@@ -11,7 +11,7 @@ from selfconf.api.tasks.last_words import LastWords
 from selfconf.api.tasks.living_task import LivingTask, RunningTasks, SilentHolder
 from selfconf.api.tasks.meant_tasks import MeantTasks, raise_for, said_of_silent
 from selfconf.api.tasks.released_components import ReleasedComponents
-from selfconf.bus.own_answers import own_answers
+from selfconf.bus.answers import own_answers
 from selfconf.bus.port import Replies
 from selfconf.discovery import namesakes
 from selfconf.errors import NetworkError, PeerError

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from selfconf.api.synchronous_bus import SynchronousBus
-from selfconf.bus.own_answers import own_answers
+from selfconf.bus.answers import own_answers
 from selfconf.bus.port import Replies
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode

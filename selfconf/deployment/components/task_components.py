@@ -27,7 +27,7 @@ from selfconf.deployment.components.living_sites import LivingSites
 from selfconf.deployment.components.port_ends import PortEnds
 from selfconf.deployment.components.reachability import Reachability
 from selfconf.deployment.components.waking import Waking
-from selfconf.deployment.run_reports import AT_LEISURE
+from selfconf.deployment.notices import AT_LEISURE
 from selfconf.deployment.run_request import Outside, TaskIdentity
 from selfconf.deployment.task_context import TaskContext
 from selfconf.model.run_event import FailWatched

@@ -41,9 +41,8 @@ from selfconf.sdk.component_code import ComponentCode
 from selfconf.sdk.inputs import InputEvents, InputFollower, Inputs
 from selfconf.sdk.operations import NeededOperations, OfferedOperations, OperationSignals
 from selfconf.sdk.outputs import SIGNALS_FIRST, Outputs
-from selfconf.sdk.runtime.call_answers import CallAnswers
 from selfconf.sdk.runtime.component_timers import ComponentTimers
-from selfconf.sdk.runtime.control_calls import ControlCalls, Reply
+from selfconf.sdk.runtime.control_calls import CallAnswers, ControlCalls, Reply
 from selfconf.sdk.runtime.other_lives import OtherLives
 from selfconf.sdk.runtime.supervision import Supervision
 from selfconf.sdk.runtime.waiting_tasks import WaitingTasks

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable
 from functools import partial
 
 from selfconf.api.living.deployed import deployed_body
-from selfconf.bus.own_answers import own_answers
+from selfconf.bus.answers import own_answers
 from selfconf.bus.port import Bus, Replies, Sample
 from selfconf.errors import PeerError, TurtleError
 from selfconf.model.term import Literal

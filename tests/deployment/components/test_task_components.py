@@ -6,7 +6,7 @@ import pytest
 
 from selfconf.configurator import ApplyTo, Phase, ReleaseFrom
 from selfconf.deployment import TaskRunner
-from selfconf.deployment.run_reports import AT_LEISURE
+from selfconf.deployment.notices import AT_LEISURE
 from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
 from tests.lab import Lab, iri
