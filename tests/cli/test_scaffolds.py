@@ -24,6 +24,11 @@ def test_what_is_scaffolded_conforms_without_a_warning(kind: str, name: str, tmp
     assert not check([str(tmp_path)]).diagnostics
 
 
+def test_no_name_is_given_an_article_that_does_not_fit_it(tmp_path: Path) -> None:
+    assert main(["new", "ontology", "orchard", "--dir", str(tmp_path)]) == 0
+    assert " a orchard" not in (tmp_path / "orchard.ttl").read_text()
+
+
 @pytest.fixture
 def home(tmp_path: Path) -> Path:
     """A folder with a scaffolded component and a scaffolded template."""
