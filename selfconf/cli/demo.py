@@ -11,7 +11,7 @@ import socket
 import sys
 from pathlib import Path
 
-from selfconf.cli.options import number_option
+from selfconf.cli.options import number_option, whole_number
 from selfconf.errors import AuthorError, InstallationError
 
 EXAMPLE = """  selfconf demo --seed 7 --out out/demo --speed 2
@@ -135,9 +135,10 @@ def _display(name: str) -> bool:
 
 
 def _seed(text: str) -> int:
-    if not text.isdecimal():
+    seed = whole_number(text)
+    if seed is None or seed < 0:
         raise argparse.ArgumentTypeError(f"{text!r} is no seed: give a whole number from zero on")
-    return int(text)
+    return seed
 
 
 def _speed(text: str) -> float:

@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from selfconf.cli.options import add_ecology_arguments, add_format_argument
+from selfconf.cli.options import add_ecology_arguments, add_format_argument, whole_number
 from selfconf.cli.terminal import complain, display, paint
 
 if TYPE_CHECKING:
@@ -87,6 +87,7 @@ def _text(line: LogLine) -> str:
 
 
 def _number(text: str) -> int:
-    if not text.isdecimal():
-        raise argparse.ArgumentTypeError(f"{text!r} is no number of lines")
-    return int(text)
+    lines = whole_number(text)
+    if lines is None or lines < 0:
+        raise argparse.ArgumentTypeError(f"{text!r} is no number of lines; it takes a whole number from zero on")
+    return lines

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import gc
 import math
+import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from functools import partial
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
 
 MOST_DOMAIN = 232
 """The greatest ROS_DOMAIN_ID that ROS 2 takes."""
+_WHOLE = re.compile(r"[+-]?[0-9]{1,18}")  # what any program can count to
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 
 
 def add_task_arguments(parser: argparse.ArgumentParser, strategy: str = "how to search") -> None:
@@ -140,9 +143,18 @@ def add_keys_argument(parser: argparse.ArgumentParser) -> None:
 
 def count_option(text: str, what: str) -> int:
     """A number of something above zero, as an option takes it; `what` says of what."""
-    if not text.isdecimal() or not int(text):
+    count = whole_number(text)
+    if count is None or count < 1:
         raise argparse.ArgumentTypeError(f"{text!r} is no number of {what}; it takes a whole number above zero")
-    return int(text)
+    return count
+
+
+def whole_number(text: str) -> int | None:
+    """A whole number as an option takes it; None for what is none, or has more digits than a count ever has.
+
+    Python's own `int` takes `1_0` and the digits of every script.
+    """
+    return int(text) if _WHOLE.fullmatch(text) else None
 
 
 def add_answer_seconds_argument(parser: argparse.ArgumentParser, what: str, default: float) -> None:
@@ -175,10 +187,7 @@ def delay_option(text: str) -> float:
 
 def number_option(text: str) -> float:
     """A number as an option takes it; NaN for what is none, which lies in no range."""
-    try:
-        return float(text)
-    except ValueError:
-        return math.nan
+    return float(text) if _NUMBER.fullmatch(text) else math.nan
 
 
 def task_of(given: argparse.Namespace) -> TaskSpecification:
@@ -261,8 +270,8 @@ def one_ecology(given: argparse.Namespace) -> None:
 
 def not_living(given: argparse.Namespace, option: str) -> None:
     """Raises AuthorError where an option names an ecology that does not live, and a living one is typed as well."""
-    for one in ("ecology", "connect"):
-        if getattr(given, one) and one not in given.from_project:
+    for one in ("ecology", "connect", "keys"):
+        if getattr(given, one, None) and one not in given.from_project:
             raise AuthorError(f"{option} is an ecology of its own, and --{one} is for the living one; give one of them")
 
 
@@ -310,6 +319,7 @@ def one_stdin(*paths: Path) -> None:
 
 def domain(text: str) -> int:
     """The number of a domain of ROS 2."""
-    if not text.isdecimal() or int(text) > MOST_DOMAIN:
+    number = whole_number(text)
+    if number is None or not 0 <= number <= MOST_DOMAIN:
         raise argparse.ArgumentTypeError(f"{text!r} is no domain; it takes a number from 0 to {MOST_DOMAIN}")
-    return int(text)
+    return number

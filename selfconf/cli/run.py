@@ -26,6 +26,7 @@ from selfconf.cli.options import (
     method_of,
     one_ecology,
     task_of,
+    whole_number,
 )
 from selfconf.cli.progress import ProgressLine
 from selfconf.cli.run_lines import LinePrinter, TextLines, json_lines
@@ -109,16 +110,14 @@ def _name(text: str) -> str:
 
 def _priority(text: str) -> int:
     """A priority, as the option takes it."""
-    from selfconf.api.arguments import checked_priority
-    from selfconf.errors import ProgrammerError
     from selfconf.model.template import MOST_PRIORITY
 
-    try:
-        return checked_priority(int(text))
-    except (ValueError, ProgrammerError):
+    priority = whole_number(text)
+    if priority is None or abs(priority) > MOST_PRIORITY:
         raise argparse.ArgumentTypeError(
             f"{text!r} is no priority; it takes a whole number from {-MOST_PRIORITY} to {MOST_PRIORITY}"
-        ) from None
+        )
+    return priority
 
 
 def run(given: argparse.Namespace) -> int:

@@ -7,7 +7,7 @@ import importlib.util
 import re
 from pathlib import Path
 
-from selfconf.cli.options import add_answer_seconds_argument, add_ecology_arguments, joined
+from selfconf.cli.options import add_answer_seconds_argument, add_ecology_arguments, joined, whole_number
 from selfconf.errors import InstallationError
 
 EXAMPLE = """  selfconf serve --port 8000
@@ -76,9 +76,10 @@ def _tell(ecology: str, url: str) -> None:
 
 
 def _port(text: str) -> int:
-    if not text.isdecimal() or int(text) > 65535:
+    port = whole_number(text)
+    if port is None or not 0 <= port <= 65535:
         raise argparse.ArgumentTypeError(f"{text!r} is no port; it takes a number from 0 to 65535")
-    return int(text)
+    return port
 
 
 def _origin(text: str) -> str:

@@ -150,7 +150,7 @@ def test_two_ecologies_are_one_too_many(command: str, template: Path, capsys: py
     assert run(capsys, command, str(template), *BOUND, *given).is_one_sentence("give one of them")
 
 
-@pytest.mark.parametrize("living", [("--ecology", "home"), ("--connect", "tcp/127.0.0.1:9")])
+@pytest.mark.parametrize("living", [("--ecology", "home"), ("--connect", "tcp/127.0.0.1:9"), ("--keys", "keys")])
 @pytest.mark.parametrize("given", [("--ads", "."), ("--endpoint", "http://127.0.0.1:9/query")])
 def test_a_living_ecology_is_not_passed_over_for_another(
     given: tuple[str, str], living: tuple[str, str], template: Path, capsys: pytest.CaptureFixture[str]

@@ -19,6 +19,30 @@ from tests.cli.command import run
         (["configure", "t.ttl", "--strategy", "worst"], "'worst'"),
         (["run", "t.ttl", "--priority", "9" * 23], "a whole number from -1000000 to 1000000"),
         (["run", "t.ttl", "--priority", "high"], "'high' is no priority"),
+        (["run", "t.ttl", "--priority", "1_0"], "'1_0' is no priority"),
+        (["query", "ASK {}", "--rows", "9" * 5000], "is no number of rows"),  # more digits than Python reads
+        (["query", "ASK {}", "--rows", "9" * 30], "is no number of rows"),
+        *(
+            ([*command, option, text], f"{text!r} is no {what}")
+            for text in ("1_0", "\N{ARABIC-INDIC DIGIT THREE}", " 3", "inf", "nan")
+            for command, option, what in (
+                (("query", "ASK {}"), "--rows", "number of rows"),
+                (("query", "ASK {}"), "--seconds", "time"),
+                (("configure", "t.ttl"), "--steps", "number of steps"),
+                (("configure", "t.ttl"), "--seconds", "time"),
+                (("run", "t.ttl"), "--settle", "time"),
+                (("run", "t.ttl"), "--priority", "priority"),
+                (("echo", "c", "p"), "--count", "number of signals"),
+                (("log",), "--lines", "number of lines"),
+                (("serve",), "--port", "port"),
+                (("demo",), "--seed", "seed"),
+                (("demo",), "--speed", "speed"),
+                (("bridge", "ros2"), "--domain", "domain"),
+                (("bridge", "wot", "x"), "--rate", "rate"),
+                (("keys", "issue", "read.a"), "--days", "number of days"),
+                (("top",), "--every", "time"),
+            )
+        ),
         (["configure", ""], "TEMPLATE: an empty text is no path; the current folder is '.'"),
         (["configure", "t.ttl", "--ads", ""], "--ads: an empty text is no path"),
     ],
