@@ -46,8 +46,8 @@ log = logging.getLogger(__name__)
 KEEPER_LOOK = 1.0
 """Seconds between two looks at which tasks this site is to run."""
 KEEPER_AGAIN = 0.3
-"""Seconds after which a task that has been left to another configurator is looked at again: that may be about to leave
-it to this site, and components let go of a task that no site runs after a second."""
+"""Seconds after which a task that this site ran, and has left to another, is looked at again: components let go of a
+task that no site runs after a second."""
 LINKED_AGAIN = 0.2
 """Seconds after which a site that has lost its hub looks whether it has one again: the hub may have been that of the
 site which ran a task, and components let go of that after a second."""
@@ -75,6 +75,8 @@ class _RunHere:
     runner: TaskRunner
     version: tuple[bool, int, int]
     """The version of the record with which it was begun, or that was written of it last."""
+    has_run: bool = False
+    """Whether it was in a configuration, or waited for one, since it was begun here."""
 
 
 class Keeper:
@@ -124,6 +126,7 @@ class Keeper:
         """Have the task of a record run, if this is the site to do so."""
         if record.ended:
             self._beginning.pop(record.task, None)
+        self._requests.insist(record.task)
         self._read(record)
         self.bus.wake_up(self._assign)
         self._look_later()
@@ -167,6 +170,8 @@ class Keeper:
             lives[site].discard(key)
             if not lives[site]:
                 del lives[site]
+                for task in self.folder.records:  # it may have been that one which went on with it
+                    self._requests.insist(task)
                 self._beginning = {task: keeper for task, keeper in self._beginning.items() if keeper != site}
         self._assign()
 
@@ -208,13 +213,16 @@ class Keeper:
         To that one it is handed over: it may have found before that the components did not listen to it yet.
         """
         if record.version != mine.version:
-            mine.runner.hand_over()
+            self._hand_over(record.task)
         elif keeper != self.site and mine.runner.state.phase in (Phase.RUNNING, Phase.REFUSED):
             if self._beginning.get(record.task) == keeper:
-                mine.runner.hand_over()
+                self._hand_over(record.task)
                 self._exchange.hand_to(keeper, record.task)
             else:
                 self._exchange.ask_later((keeper,))  # it may have said so when this site did not hear it
+
+    def _hand_over(self, task: str) -> None:
+        self._run_here.pop(task).runner.hand_over()
 
     def _without_configurator(self, known: Set[str]) -> list[Holding]:
         """What each task holds that is to be run, by its record, while it may be without a configurator.
@@ -237,10 +245,12 @@ class Keeper:
 
     def _run(self, record: TaskRecord, request: RunRequest) -> None:
         def ended(_: object) -> None:
-            mine = self._run_here.pop(record.task, None)
-            self.bus.later(KEEPER_AGAIN, self._assign)
+            mine, again = self._run_here.pop(record.task, None), KEEPER_AGAIN
             if mine is not None and mine.runner.trouble is not None:
                 self._requests.leave_alone(record.task, f"{record.task}: {mine.runner.trouble}")
+            elif mine is not None and not mine.has_run:
+                again = self._requests.give_way(record.task)
+            self.bus.later(again, self._assign)
 
         runner = _task_runner()(
             self.bus,
@@ -275,6 +285,8 @@ class Keeper:
         if known is None or mine is None or mine.version != known.version:  # it has ended, or is another site's by now
             return
         record = replace(known, lost=mine.runner.recorded_losses)
+        if isinstance(event, (TaskRunning, TaskWaiting)):
+            mine.has_run = True
         if isinstance(event, TaskRunning):
             record = replace(record, epoch=event.epoch, configuration=configuration_record(event.configuration))
         elif isinstance(event, TaskWaiting):

@@ -15,6 +15,12 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 
+GIVES_WAY = 0.3
+"""Seconds for which a task is left at first to another configurator of it: that may be about to leave it to this site,
+and components let go of a task that no site runs after a second."""
+GIVES_WAY_AT_MOST = 2.4
+"""Seconds for which a task is left at most to another configurator: for longer than components count on one that has
+gone before they saw it, or each that is begun would find what the one before it has reserved, and so on for good."""
 RESPITE = 60.0
 """Seconds after which a task is tried again that could not be read for want of room, or whose search broke."""
 
@@ -28,6 +34,8 @@ class TaskRequests:
         self._requests: dict[str, RunRequest | None] = {}
         self._respites: dict[str, float] = {}
         """Until when each task is left alone that has given trouble."""
+        self._given_way: dict[str, tuple[float, float]] = {}
+        """For how many seconds each task was left last to another configurator of it, and until when."""
 
     def read(self, record: TaskRecord) -> None:
         """Read a task, unless it has ended, was read before or is left alone; one that cannot be read is never run."""
@@ -35,6 +43,7 @@ class TaskRequests:
         if record.ended:
             self._requests.pop(task, None)
             self._respites.pop(task, None)
+            self.insist(task)
             return
         if task in self._requests or self._is_left_alone(task):
             return
@@ -55,5 +64,17 @@ class TaskRequests:
         log.error("%s; trying again in %.0f s", trouble, RESPITE)
         self._respites[task] = self._bus.now() + RESPITE
 
+    def give_way(self, task: str) -> float:
+        """Leave a task to another configurator of it, for longer each time, and return for how many seconds."""
+        last, _ = self._given_way.get(task, (GIVES_WAY / 2, 0.0))
+        seconds = min(2 * last, GIVES_WAY_AT_MOST)
+        self._given_way[task] = seconds, self._bus.now() + seconds
+        return seconds
+
+    def insist(self, task: str) -> None:
+        """Leave a task to no other configurator any more: that has handed it over, or may have gone."""
+        self._given_way.pop(task, None)
+
     def _is_left_alone(self, task: str) -> bool:
-        return self._respites.get(task, 0.0) > self._bus.now()
+        _, until = self._given_way.get(task, (0.0, 0.0))
+        return max(until, self._respites.get(task, 0.0)) > self._bus.now()

@@ -6,10 +6,11 @@ import pytest
 
 from selfconf.bus.memory import Network
 from selfconf.deployment import RunRequest
-from selfconf.deployment.task_requests import RESPITE, TaskRequests
+from selfconf.deployment.task_requests import GIVES_WAY, GIVES_WAY_AT_MOST, RESPITE, TaskRequests
 from selfconf.errors import AuthorError
 from selfconf.model.immutable import replace
 from selfconf.protocol.messages import TaskRecord
+from selfconf.sdk.runtime.supervision import GRACE
 from tests.deployment.keepers import RECORD
 from tests.lab import request_for
 
@@ -87,3 +88,26 @@ def test_a_task_that_has_given_trouble_is_not_run_for_a_while() -> None:
     reader.pass_time(RESPITE + 1.0)
     assert reader.read()
     assert reader.times == 1
+
+
+def test_a_task_is_left_to_another_configurator_for_longer_each_time_until_that_has_let_go() -> None:
+    reader = Reader()
+    reader.read()
+    waits = [reader.requests.give_way(RECORD.task) for _ in range(5)]
+    assert waits == [GIVES_WAY, 2 * GIVES_WAY, 4 * GIVES_WAY, GIVES_WAY_AT_MOST, GIVES_WAY_AT_MOST]
+    assert waits[-1] > GRACE
+    assert not reader.read()
+    reader.pass_time(GIVES_WAY_AT_MOST)
+    assert reader.read()
+    reader.requests.give_way(RECORD.task)
+    reader.requests.insist(RECORD.task)
+    assert reader.read()
+    assert reader.requests.give_way(RECORD.task) == GIVES_WAY
+
+
+def test_a_task_that_has_given_trouble_is_left_alone_though_another_configurator_has_let_go_of_it() -> None:
+    reader = Reader()
+    reader.read()
+    reader.requests.leave_alone(RECORD.task, "its search broke")
+    reader.requests.insist(RECORD.task)
+    assert not reader.read()

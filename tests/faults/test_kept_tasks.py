@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from selfconf.bus.port import Replies
-from selfconf.deployment import TaskRunner
+from selfconf.deployment import Keeper
 from selfconf.deployment.record_exchange import RecordExchange
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import TaskRecord
@@ -77,7 +77,7 @@ def asks_no_site_that_comes(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def lets_go_of_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(TaskRunner, "hand_over", lambda self: None)
+    monkeypatch.setattr(Keeper, "_hand_over", lambda self, task: None)
 
 
 @pytest.mark.slow

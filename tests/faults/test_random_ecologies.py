@@ -77,3 +77,18 @@ def test_sites_that_keep_tasks_run_them_and_go_on_with_them(folder: Path) -> Non
         assert len({*tasks}) == len(tasks)
         ran += any(agent.configuration is not None for agent in history.agents)
     assert ran >= 3
+
+
+@pytest.mark.parametrize(
+    "once",
+    [
+        pytest.param(
+            Recipe(2200000634, random_ecology(733333544), kept=True),
+            id="each configurator of a task finds what the one before it has reserved, and gives way to it",
+        )
+    ],
+)
+def test_a_history_in_an_ecology_of_random_shape_that_was_broken_once_is_not_any_more(
+    once: Recipe, folder: Path
+) -> None:
+    play_well(once, folder)
