@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from selfconf.bus.answers import answering
-from selfconf.bus.port import Bus, Request, Urgency
-from selfconf.deployment.run_request import RunRequest, TaskIdentity
+from selfconf.bus.port import Request, Urgency
+from selfconf.deployment.run_request import RunRequest
+from selfconf.deployment.task_context import TaskContext
 from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import LARGEST, encode
-from selfconf.protocol.keys import Keys, call_of
+from selfconf.protocol.keys import call_of
 from selfconf.protocol.messages import Status
 from selfconf.rdf.provenance import Deployment, configuration_iri, deployment_triples
 from selfconf.rdf.turtle import to_turtle
@@ -25,15 +26,13 @@ class DeploymentRecord:
 
     def __init__(
         self,
-        bus: Bus,
-        keys: Keys,
-        name: str,
-        identity: Callable[[], TaskIdentity],
+        context: TaskContext,
         request: RunRequest,
         status: Callable[[], Status],
         stop: Callable[[], None],
     ) -> None:
-        self.bus, self._keys, self._name, self._identity, self._request = bus, keys, name, identity, request
+        self.bus, self._keys, self._name = context.ecology.bus, context.ecology.keys, context.name
+        self._identity, self._request = context.identity, request
         self._status, self._stop = status, stop
         self._deployed: tuple[IRI, Configuration, int, float] | None = None
         self._revises: tuple[IRI, Configuration] | None = None
@@ -42,10 +41,10 @@ class DeploymentRecord:
         """The newest failure of each component, the newest last, of the FAILURES_KEPT that have failed last."""
         self._heard = False
         """Whether an observer wants to receive each configuration: one that asks may ask too late."""
-        self._publisher = bus.publisher(keys.configuration(name), Urgency.SIGNAL, self._matched)
+        self._publisher = self.bus.publisher(self._keys.configuration(self._name), Urgency.SIGNAL, self._matched)
         self._served = [
-            bus.serve(keys.configuration(name), self._serve_configuration),
-            bus.serve(keys.configurator_call(name), self._serve_call),
+            self.bus.serve(self._keys.configuration(self._name), self._serve_configuration),
+            self.bus.serve(self._keys.configurator_call(self._name), self._serve_call),
         ]
 
     def close(self) -> None:

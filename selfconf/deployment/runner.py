@@ -117,18 +117,24 @@ class TaskRunner:
         """Why the task was given up, where that is neither a refusal nor a wish: its shapes cannot be judged."""
         self._notices = RunNotices(bus, self.keys, self.name, task)
         self.reports = RunReports(bus, request, self._notices, clock)
-        context = TaskContext(self.ecology, lambda: self.state, self._step, self.reports.note)
-        self._components = TaskComponents(context, self.identity, self.supervisor, request.outside)
+        context = TaskContext(
+            self.ecology,
+            self.name,
+            self.supervisor,
+            lambda: self.identity,
+            lambda: self.state,
+            self._step,
+            self.reports.note,
+        )
+        self._components = TaskComponents(context, request.outside)
         self._readiness = Readiness(context, request, self._components)
-        self._discovery = TaskDiscovery(context, self.name, self._components.liveness, request.without_configurator)
+        self._discovery = TaskDiscovery(context, self._components.liveness, request.without_configurator)
         self._search = TaskSearch(context, request, self._components.liveness, self._give_up)
         self._lasting_losses = LastingLosses(context)
         self._retries_while_refused = RetriesWhileRefused(context, self._components.lives)
         self._retries_while_running = RetriesWhileRunning(context, self._components.lives)
         self._improvement = Improvement(context, request.upgrade)
-        self._record = DeploymentRecord(
-            bus, self.keys, self.name, lambda: self.identity, request, self.status, self.stop
-        )
+        self._record = DeploymentRecord(context, request, self.status, self.stop)
         self._events: deque[Event] = deque()
         self._stepping = False
         self._leave = bus.announce(self.supervisor)
@@ -185,7 +191,6 @@ class TaskRunner:
         ranked = replace(self.identity, priority=priority, beginning=beginning)
         if ranked != self.identity:
             self.identity = ranked
-            self._components.calls.rank(ranked)
             self._step(Ranked(priority))
 
     def issued_outside(self) -> dict[str, tuple[Wire, ...]]:

@@ -1,11 +1,11 @@
-"""What every part of the configurator of a running task is given: the ecology, the machine, the listener."""
+"""What every part of the configurator of a running task is given: the ecology, who it is, the machine, the listener."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 from selfconf.configurator import Event, State
-from selfconf.deployment.run_request import EventListener
+from selfconf.deployment.run_request import EventListener, TaskIdentity
 from selfconf.discovery import EcologyView
 from selfconf.model.immutable import immutable
 
@@ -15,6 +15,12 @@ class TaskContext:
     """One running task, as the parts of its configurator see it."""
 
     ecology: EcologyView
+    name: str
+    """The name of the configurator in the ecology."""
+    supervisor: str
+    """The liveliness key of the configurator, by which components supervise it."""
+    identity: Callable[[], TaskIdentity]
+    """Returns how the task is known to others, with the rank that it has now."""
     state: Callable[[], State]
     """Returns the state of the machine as it is now."""
     step: Callable[[Event], None]

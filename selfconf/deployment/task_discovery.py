@@ -23,12 +23,12 @@ class TaskDiscovery:
     def __init__(
         self,
         context: TaskContext,
-        name: str,
         liveness: Liveness,
         without_configurator: WithoutConfigurator,
     ) -> None:
-        """`name` is that of the configurator; `without_configurator` that of the `RunRequest`."""
-        self._bus, self._ecology, self._name, self._liveness = context.ecology.bus, context.ecology, name, liveness
+        """`without_configurator` is that of the `RunRequest`."""
+        self._bus, self._ecology, self._name = context.ecology.bus, context.ecology, context.name
+        self._liveness = liveness
         self._without_configurator = without_configurator
         self._state, self._step, self._report = context.state, context.step, context.report
         self._asked = 0

@@ -24,7 +24,7 @@ class Audits:
 
     def __init__(self, context: TaskContext, calls: Calls, reachability: Reachability) -> None:
         self._bus, self._calls, self._reachability = context.ecology.bus, calls, reachability
-        self._state, self._step = context.state, context.step
+        self._state, self._step, self._identity = context.state, context.step, context.identity
         self._audited = 0
         self._silences: dict[IRI, tuple[str, int]] = {}
         """How often in a row each component has not answered an audit, and in which life."""
@@ -63,7 +63,7 @@ class Audits:
         if answer.life != held.life:
             return
         self.dropped[component] = answer.dropped
-        if answer.task != self._calls.identity.task:
+        if answer.task != self._identity().task:
             self._calls.forget_connections()
             self._step(Reconnected())
         elif not answer.active:

@@ -15,7 +15,6 @@ from typing import TypedDict
 from selfconf.bus.port import Replies
 from selfconf.configurator import Answered, Appeared, Call, Unanswered
 from selfconf.deployment.components.held_lives import HeldLives
-from selfconf.deployment.run_request import TaskIdentity
 from selfconf.deployment.task_context import TaskContext
 from selfconf.errors import PeerError
 from selfconf.model.holder import Holder
@@ -70,14 +69,12 @@ class Calling:
     def __init__(
         self,
         context: TaskContext,
-        identity: TaskIdentity,
-        supervisor: str,
         lives: HeldLives,
         acts: Callable[[IRI, CallAnswer], None],
     ) -> None:
         """`acts` is called when a component has answered that it acts as it was applied to."""
         self.bus, self.ecology, self.keys = context.ecology.bus, context.ecology, context.ecology.keys
-        self.identity, self.supervisor = identity, supervisor
+        self._identity, self._supervisor = context.identity, context.supervisor
         self.state, self.step, self._report = context.state, context.step, context.report
         self.lives, self._acts = lives, acts
         self._latest: dict[IRI, CallMessage] = {}
@@ -106,7 +103,7 @@ class Calling:
 
     def ask_for_state(self, component: IRI, seconds: float, answered: Callable[[Replies], None]) -> None:
         """Ask a component once for its actual state, for which it may take so many seconds."""
-        question = encode(StateOf(self.identity.task))
+        question = encode(StateOf(self._identity().task))
         self.bus.ask(self.keys.call(component, "state"), question, seconds, answered)
 
     def call(self, component: IRI, message: CallMessage, last_resort: LastResort | None = None) -> None:
@@ -177,13 +174,14 @@ class Calling:
 
     def claim(self, component: IRI, epoch: int) -> _ClaimFields:
         """What every call says: see `selfconf.protocol.messages.Claim`."""
+        identity = self._identity()
         return {
             "epoch": epoch,
-            "supervisor": self.supervisor,
-            "task": self.identity.task,
+            "supervisor": self._supervisor,
+            "task": identity.task,
             "life": self.lives.life(component) or "",
-            "priority": self.identity.priority,
-            "beginning": self.identity.beginning,
+            "priority": identity.priority,
+            "beginning": identity.beginning,
         }
 
     def answer_in(self, replies: Replies, life: str | None) -> CallAnswer | None:

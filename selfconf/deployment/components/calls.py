@@ -26,7 +26,7 @@ from selfconf.deployment.components.held_lives import HeldLives
 from selfconf.deployment.components.port_ends import PortEnds
 from selfconf.deployment.components.releases import Releases
 from selfconf.deployment.components.waking import Waking
-from selfconf.deployment.run_request import Standby, TaskIdentity
+from selfconf.deployment.run_request import Standby
 from selfconf.deployment.task_context import TaskContext
 from selfconf.model.configuration import Configuration, Connection
 from selfconf.model.run_event import (
@@ -56,17 +56,14 @@ class Calls:
     def __init__(
         self,
         context: TaskContext,
-        identity: TaskIdentity,
-        supervisor: str,
         lives: HeldLives,
         waking: Waking,
         ends: PortEnds,
     ) -> None:
         self.bus, self.ecology, self.keys = context.ecology.bus, context.ecology, context.ecology.keys
-        self.supervisor = supervisor
         self._state, self._step, self._report = context.state, context.step, context.report
         self._lives, self._ends = lives, ends
-        self._calling = Calling(context, identity, supervisor, lives, self._acts)
+        self._calling = Calling(context, lives, self._acts)
         self._releases = Releases(context, lives, waking, self._calling)
         self.look = self._calling.look
         self._connections: dict[IRI, tuple[str, frozenset[Connection]]] = {}
@@ -77,15 +74,6 @@ class Calls:
         """What is applied to once it is known what stands behind the composites that it is connected to."""
         self._awaited: set[IRI] = set()
         """The components that another task holds, and that are waited for: reported once."""
-
-    @property
-    def identity(self) -> TaskIdentity:
-        """The task that the calls are made for."""
-        return self._calling.identity
-
-    def rank(self, identity: TaskIdentity) -> None:
-        """Make the calls from now on with another rank of the task."""
-        self._calling.identity = identity
 
     # Reserving.
 

@@ -29,13 +29,12 @@ class ComponentMessages:
     def __init__(
         self,
         context: TaskContext,
-        task: str,
         lives: HeldLives,
         ends: PortEnds,
         heed: Callable[[Failed], None],
     ) -> None:
-        """`task` is the identity of the task; `heed` receives each failure that is about it."""
-        self._keys, self._task = context.ecology.keys, task
+        """`heed` receives each failure that is about the task."""
+        self._keys, self._task = context.ecology.keys, context.identity().task
         self._lives, self._ends, self._state, self._step = lives, ends, context.state, context.step
         self._heed = heed
         self._watched: set[IRI] = set()

@@ -39,7 +39,7 @@ class Liveness:
     ) -> None:
         self.bus, self.ecology, self._calls, self._waking = context.ecology.bus, context.ecology, calls, waking
         self._sites, self._reachability = sites, reachability
-        self._state, self._step = context.state, context.step
+        self._state, self._step, self._supervisor = context.state, context.step, context.supervisor
         self._news: dict[str, str] = {}
         """A life of each component that is not followed and has begun to live, by its chunk, until it is fed."""
         self._feed_soon = Timer(self.bus, NEWS_TOGETHER, self._feed_news)
@@ -162,7 +162,7 @@ class Liveness:
         acted = held is not None and held.confirmed and state.phase is not Phase.DISMANTLING and state.epoch == epoch
         if answer is None:
             self._step(Failed(component, life, Cause.CRASH, "it does not answer since it was cut off"))
-        elif answer.supervisor == self._calls.supervisor:
+        elif answer.supervisor == self._supervisor:
             if answer.active:
                 self._calls.heed_ends(component, answer)
             elif acted:

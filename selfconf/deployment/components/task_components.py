@@ -28,7 +28,7 @@ from selfconf.deployment.components.port_ends import PortEnds
 from selfconf.deployment.components.reachability import Reachability
 from selfconf.deployment.components.waking import Waking
 from selfconf.deployment.notices import AT_LEISURE
-from selfconf.deployment.run_request import Outside, TaskIdentity
+from selfconf.deployment.run_request import Outside
 from selfconf.deployment.task_context import TaskContext
 from selfconf.model.run_event import FailWatched
 from selfconf.model.term import IRI
@@ -41,17 +41,17 @@ ComponentEffect = Watch | Unwatch | WakeUp | ReserveOf | QueueFor | Decline | Aw
 class TaskComponents:
     """Asks the components of one task what its machine wants, and feeds that with what they say and how they live."""
 
-    def __init__(self, context: TaskContext, identity: TaskIdentity, supervisor: str, outside: Outside | None) -> None:
+    def __init__(self, context: TaskContext, outside: Outside | None) -> None:
         self._bus, self._state, self._report = context.ecology.bus, context.state, context.report
         self.lives = HeldLives(context.ecology)
         self.ends = PortEnds(context.ecology, outside)
         self._waking = Waking(context, self.lives)
-        self.calls = Calls(context, identity, supervisor, self.lives, self._waking, self.ends)
+        self.calls = Calls(context, self.lives, self._waking, self.ends)
         sites = LivingSites(context, self._waking)
         self.reachability = Reachability(context, self.calls, sites)
         self.liveness = Liveness(context, self.calls, self._waking, sites, self.reachability)
         self.audits = Audits(context, self.calls, self.reachability)
-        self._messages = ComponentMessages(context, identity.task, self.lives, self.ends, self.reachability.heed)
+        self._messages = ComponentMessages(context, self.lives, self.ends, self.reachability.heed)
         self._unsubscribe = self._bus.subscribe(
             context.ecology.keys.reopens(),
             lambda sample: self.reachability.reopens(site_of(sample.key)),
