@@ -85,7 +85,11 @@ def test_sites_that_keep_tasks_run_them_and_go_on_with_them(folder: Path) -> Non
         pytest.param(
             Recipe(2200000634, random_ecology(733333544), kept=True),
             id="each configurator of a task finds what the one before it has reserved, and gives way to it",
-        )
+        ),
+        pytest.param(
+            Recipe(2200000223, random_ecology(733333407), upgrades=True, harsh=True, kept=True),
+            id="a component crashes that was adopted while its site was out of sight",
+        ),
     ],
 )
 def test_a_history_in_an_ecology_of_random_shape_that_was_broken_once_is_not_any_more(

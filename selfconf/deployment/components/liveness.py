@@ -46,14 +46,18 @@ class Liveness:
         self._unseen: set[tuple[str, str]] = set()
         """The lives of a roll-call that the watch has not shown yet, with the component's chunk."""
         self._names: dict[str, IRI] = {}
-        """Every component that was ever advertised, by its chunk: an event costs one look-up, however many live."""
+        """Every component that was ever advertised or held, by its chunk: an event costs one look-up, however many
+        live."""
         self._doubted: set[tuple[str, str]] = set()
         """The lives that seem to have ended since the network was last asked, with the component's chunk."""
         self._asking = False
 
     def discovered(self, discovery: Discovery) -> None:
-        """Follow lives from the first discovery on; ask sites later that were not asked or did not answer in full."""
-        self._names.update((component_chunk(component), component) for component in discovery.found)
+        """Follow lives from the first discovery on; ask sites later that were not asked or did not answer in full.
+
+        So is the life of a component that was adopted, and whose site is out of sight.
+        """
+        self._names.update((component_chunk(one), one) for one in (*discovery.found, *self._state().held))
         self._sites.answered(discovery)
         if not self.ecology.followed:
             self._called({(chunk, life) for chunk, lives in self.ecology.lives.items() for life in lives})
