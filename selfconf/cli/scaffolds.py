@@ -126,7 +126,7 @@ _ONTOLOGY = """\
 :${class_}Reading a owl:Class ;
     rdfs:subClassOf rob:Signal ;
     rdfs:label "$lower reading"@en ;
-    skos:definition "What the $lower tells."@en ;
+    skos:definition "$label: what it tells."@en ;
     rob:field ( [ rob:fieldName "value" ; rob:datatype xsd:double ] ) ;
     rdfs:isDefinedBy <$document> .
 
@@ -134,7 +134,7 @@ _ONTOLOGY = """\
 :range a owl:DatatypeProperty ;
     rdfs:range xsd:double ;
     rdfs:label "range"@en ;
-    skos:definition "How far the $lower reaches, in metres."@en ;
+    skos:definition "$label: how far it reaches, in metres."@en ;
     rdfs:isDefinedBy <$document> .
 """
 

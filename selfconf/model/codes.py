@@ -733,6 +733,14 @@ CODES: tuple[Code, ...] = (
         severity=Severity.WARNING,
     ),
     Code(
+        "SC-L32", "What OWL combines stands in a list.",
+        "The value of owl:unionOf, owl:intersectionOf, owl:oneOf and the like is a list, in parentheses; of anything "
+        "else a reasoner infers nothing.",
+        ':Player a owl:Class ; rdfs:label "player"@en ; owl:unionOf rob:Tuner , rob:Speaker .',
+        ':Player a owl:Class ; rdfs:label "player"@en ; owl:unionOf ( rob:Tuner rob:Speaker ) .',
+        severity=Severity.WARNING,
+    ),
+    Code(
         "SC-P01", "A project file is TOML.",
         "Nothing else can be said of a file that is not TOML 1.0, encoded in UTF-8.",
         'ecology = home', 'ecology = "home"',

@@ -26,7 +26,9 @@ def test_what_is_scaffolded_conforms_without_a_warning(kind: str, name: str, tmp
 
 def test_no_name_is_given_an_article_that_does_not_fit_it(tmp_path: Path) -> None:
     assert main(["new", "ontology", "orchard", "--dir", str(tmp_path)]) == 0
-    assert " a orchard" not in (tmp_path / "orchard.ttl").read_text()
+    text = (tmp_path / "orchard.ttl").read_text()
+    assert " a orchard" not in text
+    assert " the orchard" not in text
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 
 from selfconf.model.diagnostic import Diagnostic
 from selfconf.rdf.validation.lints.flow import idle_loops, starving_inputs
-from selfconf.rdf.validation.lints.hierarchies import circular_hierarchies, mixed_hierarchies
+from selfconf.rdf.validation.lints.hierarchies import circular_hierarchies, mixed_hierarchies, unlisted_members
 from selfconf.rdf.validation.lints.linted_file import LintedFile
 from selfconf.rdf.validation.lints.signal_classes import (
     components_as_signals,
@@ -41,6 +41,7 @@ from selfconf.rdf.validation.lints.terms import (
     misplaced_terms,
     ownerless_ports,
     prefixes,
+    prefixes_of_queries,
     properties_as_classes,
     repeated_descriptions,
     templates_as_groundings,
@@ -65,6 +66,7 @@ WORDS: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
     repeated_descriptions,
     prefixes,
     undeclared_prefixes,
+    prefixes_of_queries,
     ownerless_ports,
     untyped_ports,
     typed_operations,
@@ -78,6 +80,7 @@ WORDS: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
     components_as_signals,
     circular_hierarchies,
     mixed_hierarchies,
+    unlisted_members,
 )
 """The lints that run on every file."""
 TEMPLATES: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (

@@ -1,4 +1,4 @@
-"""Hierarchies that match more than was meant, or nothing: circles, and classes in the place of properties.
+"""Hierarchies that match more than was meant, or nothing: circles, classes in the place of properties, and no lists.
 
 A circle of classes, each below the next, makes them one class wherever the hierarchy is followed: what offers one
 serves where any other is wanted. RDFS allows it; where that is meant, an equivalence says so.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rdflib import OWL, RDFS, URIRef
+from rdflib import OWL, RDF, RDFS, URIRef
 from rdflib.term import Node
 
 from selfconf.model.diagnostic import Diagnostic
@@ -24,6 +24,13 @@ _BETWEEN: dict[Node, tuple[str, URIRef]] = {
     OWL.equivalentProperty: (_PROPERTIES, OWL.equivalentClass),
 }
 """Between what each word of a hierarchy stands, and the word that stands between the others."""
+_LISTING = frozenset(
+    (
+        *(OWL.unionOf, OWL.intersectionOf, OWL.disjointUnionOf, OWL.oneOf),
+        *(OWL.propertyChainAxiom, OWL.hasKey, OWL.members, OWL.distinctMembers),
+    )
+)
+"""What has a list for its value in every ontology (OWL 2, mapping to RDF graphs, section 2)."""
 
 
 def circular_hierarchies(file: LintedFile) -> Iterator[Diagnostic]:
@@ -57,6 +64,18 @@ def mixed_hierarchies(file: LintedFile) -> Iterator[Diagnostic]:
             message = f"{file.short(str(predicate))} stands between {wanted}, and {file.short(str(stray))} is {what}."
             hint = None if wanted in kinds else f"Did you mean {file.short(str(other_word))}?"
             yield file.at(offset, "SC-L30", message, hint=hint)
+
+
+def unlisted_members(file: LintedFile) -> Iterator[Diagnostic]:
+    """Where OWL wants a list and there is none: once for each subject and property."""
+    told: set[tuple[Node, Node]] = set()
+    for (subject, predicate, value), offsets in file.positions.triples.items():
+        listed_well = value == RDF.nil or (value, RDF.first, None) in file.graph
+        if predicate in _LISTING and not listed_well and (subject, predicate) not in told:
+            told.add((subject, predicate))
+            word = file.short(str(predicate))
+            message = f"The value of {word} has to be a list, so nothing is inferred from this."
+            yield file.at(offsets.object, "SC-L32", message, hint=f"Write {word} ( ... ), without commas.")
 
 
 def _kind(index: TermIndex, term: str) -> str | None:

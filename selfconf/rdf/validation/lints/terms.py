@@ -269,6 +269,21 @@ def prefixes(file: LintedFile) -> Iterator[Diagnostic]:
             yield _confused(file, iri, meant, offset)
 
 
+def prefixes_of_queries(file: LintedFile) -> Iterator[Diagnostic]:
+    """Prefixes that are declared for queries (`sh:declare`) with another namespace than a known one, or the file's."""
+    own = {prefix: iri for prefix, iri, _ in file.positions.prefixes}
+    for node, declared in file.graph.subject_objects(SH.namespace):
+        statement = file.positions.triples.get((node, SH.namespace, declared))
+        iri, prefix = str(declared), str(file.graph.value(node, SH.prefix))
+        if statement is None or not isinstance(declared, Literal):
+            continue
+        if (meant := file.index.confused(iri)) is not None:
+            yield _confused(file, iri, meant, statement.object)
+        elif own.get(prefix, iri) != iri:
+            message = f"The prefix {prefix}: is bound to <{own[prefix]}> in this file, and to <{iri}> in its queries."
+            yield file.at(statement.object, "SC-L05", message)
+
+
 def undeclared_prefixes(file: LintedFile) -> Iterator[Diagnostic]:
     """Namespaces that are nearly known ones and have no prefix: told where the first of their terms stands."""
     told = {iri for _, iri, _ in file.positions.prefixes}
