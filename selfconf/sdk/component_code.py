@@ -13,13 +13,11 @@ from concurrent.futures import Future
 from functools import partial
 from typing import Any
 
-from selfconf.bus.port import Bus
 from selfconf.model.literal_values import as_python
-from selfconf.model.profile import Profile
 from selfconf.model.term import Term
 from selfconf.sdk.blindness import TOLERATES, Blindness
-from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import Component, Refused, Signal
+from selfconf.sdk.component_context import ComponentContext
 
 log = logging.getLogger(__name__)
 
@@ -34,23 +32,21 @@ class ComponentCode:
 
     def __init__(
         self,
-        bus: Bus,
-        thread: CodeThread,
-        profile: Profile,
+        context: ComponentContext,
         component: Component,
-        fail: Callable[[str], None],
         woken: Callable[[str], None] = lambda port: None,
         restless: Callable[[str], None] = lambda why: None,
         rests: Callable[[], None] = lambda: None,
     ) -> None:
-        """`fail` raises FAIL for what breaks; `woken` is called when the code has been woken from its rest by an input.
+        """`woken` is called when the code has been woken from its rest by an input.
 
         That is on the bus's thread, and the input is empty where it was not one that had been unfed. `restless` is
         called when the code of an actuator breaks as it is to come to rest, on the thread of that code; `rests` when it
         is about to rest until its inputs are fed, on that thread as well.
         """
         self._woken, self._restless, self._about_to_rest = woken, restless, rests
-        self._bus, self._thread, self._component, self._fail = bus, thread, component, fail
+        self._bus, self._thread, self._component, self._fail = context.bus, context.thread, component, context.fail
+        profile = context.profile
         self._parameters = {parameter.name for parameter in profile.parameters}
         self._name = profile.component.short
         self._actuates = profile.is_actuator
@@ -67,7 +63,9 @@ class ComponentCode:
         self._on = self._resting = self._lacking = False
         tolerates = TOLERATES if profile.tolerates is None else profile.tolerates
         required = frozenset(port.name for port in profile.required if not port.is_operation)
-        self._blindness = Blindness(bus, required | {INCOMPLETE}, tolerates if self._actuates else None, self._rest)
+        self._blindness = Blindness(
+            self._bus, required | {INCOMPLETE}, tolerates if self._actuates else None, self._rest
+        )
         self._values: dict[str, Term] = {}
         self._connected: set[str] = set()
         """The operations of which the code has heard, since it was started, that they are connected."""

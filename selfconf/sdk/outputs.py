@@ -11,19 +11,16 @@ import itertools
 import math
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
 from selfconf.bus.answers import answering
-from selfconf.bus.port import Bus, Publisher, Request, Undo, Urgency
+from selfconf.bus.port import Publisher, Request, Undo, Urgency
 from selfconf.errors import ProgrammerError
-from selfconf.model.profile import Profile
-from selfconf.model.signal_fields import SignalFields
-from selfconf.model.term import IRI
 from selfconf.model.wording import listed
-from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import SignalEncoding
 from selfconf.protocol.stamps import PLAIN, StampWriter
+from selfconf.sdk.component_context import ComponentContext
 from selfconf.sdk.payloads import UnsayableError, as_bytes, as_json
 
 SIGNALS_FIRST = 0.002
@@ -39,26 +36,15 @@ NOTHING_YET = "it acts, and has issued nothing yet"
 class Outputs:
     """The outputs of one component in one life."""
 
-    def __init__(
-        self,
-        bus: Bus,
-        keys: Keys,
-        profile: Profile,
-        life: str,
-        active: Callable[[], bool],
-        fields: Mapping[IRI, SignalFields],
-        malformed: Callable[[str], None],
-    ) -> None:
-        """`active` says whether the component is active: what it emits otherwise is dropped.
-
-        `fields` are those of the kinds of signals; `malformed` hears what is wrong with a signal that is not issued.
-        """
-        self._profile, self._active, self._malformed = profile, active, malformed
+    def __init__(self, context: ComponentContext, active: Callable[[], bool]) -> None:
+        """`active` says whether the component is active: what it emits otherwise is dropped."""
+        bus, keys, profile, fields = context.bus, context.keys, context.profile, context.fields
+        self._profile, self._active, self._malformed = profile, active, context.malformed
         self._fields = {
             port.name: [fields[signal] for signal in port.signals if signal in fields]
             for port in profile.signal_outputs
         }
-        self._stamps = {port.name: StampWriter(profile.component, life) for port in profile.signal_outputs}
+        self._stamps = {port.name: StampWriter(profile.component, context.life) for port in profile.signal_outputs}
         self._sequence = itertools.count(1)
         self._newest = 0
         # Held while a signal is issued: inputs pass over one that comes after another with a higher number. Reentrant:

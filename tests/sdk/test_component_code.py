@@ -11,12 +11,13 @@ from selfconf.bus.memory import Network
 from selfconf.bus.port import Replies, Urgency
 from selfconf.model.profile import Ports, Profile
 from selfconf.model.term import Literal
-from selfconf.protocol.activation import ActivationPhase
+from selfconf.protocol.activation import Activation, ActivationPhase
 from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.messages import Apply, CallAnswer, Release, Reserve, Stamp, Verdict, Wire
+from selfconf.protocol.messages import Apply, CallAnswer, Cause, Release, Reserve, Stamp, Verdict, Wire
 from selfconf.sdk.code_thread import CodeThread, RunningCode
 from selfconf.sdk.component import Component, Refused
 from selfconf.sdk.component_code import ComponentCode
+from selfconf.sdk.component_context import ComponentContext
 from selfconf.sdk.runtime import ComponentRuntime
 from selfconf.sdk.runtime.supervision import GRACE
 from selfconf.sdk.runtime.waiting_tasks import YIELDING
@@ -368,6 +369,9 @@ def test_what_is_done_at_intervals_takes_turns_with_signals_however_long_it_take
 
 
 def test_code_that_hears_of_the_end_of_a_connection_is_named_by_that() -> None:
+    def no_fail(reason: str, cause: Cause = Cause.FAIL) -> None:
+        pytest.fail(reason)
+
     thread, said = CodeThread(inline=True), list[RunningCode | None]()
 
     class Caller(Component):
@@ -377,7 +381,8 @@ def test_code_that_hears_of_the_end_of_a_connection_is_named_by_that() -> None:
         def disconnected(self, operation: str) -> None:
             said.append(thread.running)
 
-    code = ComponentCode(Network().node(), thread, CAP_PROFILE, Caller(), lambda trouble: None)
+    context = ComponentContext(Network().node(), KEYS, CAP_PROFILE, "life-1", thread, {}, Activation, no_fail)
+    code = ComponentCode(context, Caller())
     code.start({}, lambda trouble: None)
     code.connection_changed("look()", True)
     code.connection_changed("look()", False)

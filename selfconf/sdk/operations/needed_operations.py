@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from selfconf.bus.port import Bus, Replies
+from selfconf.bus.port import Replies
 from selfconf.errors import PeerError, ProgrammerError
-from selfconf.model.profile import CALL_MARK, Profile
-from selfconf.model.signal_fields import SignalFields
+from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI
-from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Apply, Wires
-from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import CallStatus, Response
 from selfconf.sdk.component_code import ComponentCode
+from selfconf.sdk.component_context import ComponentContext
 from selfconf.sdk.operations.operation_signals import (
     LONGEST_PATIENCE,
     MOST_CALLS,
@@ -31,21 +29,10 @@ from selfconf.sdk.payloads import UnsayableError
 class NeededOperations:
     """The operations that one component needs in one life."""
 
-    def __init__(
-        self,
-        bus: Bus,
-        keys: Keys,
-        thread: CodeThread,
-        profile: Profile,
-        signals: OperationSignals,
-        code: ComponentCode,
-        fields: Mapping[IRI, SignalFields],
-        malformed: Callable[[str], None],
-    ) -> None:
-        """`fields` are those of the kinds of requests; `malformed` hears what is wrong with one of this component."""
-        self._bus, self._keys, self._thread, self._profile, self._code = bus, keys, thread, profile, code
-        self._signals, self._malformed = signals, malformed
-        self._needed = operation_fields(profile.needed_operations, fields)
+    def __init__(self, context: ComponentContext, signals: OperationSignals, code: ComponentCode) -> None:
+        self._bus, self._keys, self._thread, self._profile = context.bus, context.keys, context.thread, context.profile
+        self._signals, self._code, self._malformed = signals, code, context.malformed
+        self._needed = operation_fields(context.profile.needed_operations, context.fields)
         self._wires: Wires = {}
         self._calls = 0
         """How many calls wait for their answers."""

@@ -17,22 +17,21 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from selfconf.bus.port import Bus, Request
+from selfconf.bus.port import Request
 from selfconf.errors import PeerError
 from selfconf.model.immutable import replace
-from selfconf.model.profile import CALL_MARK, Profile
-from selfconf.model.signal_fields import SignalFields
+from selfconf.model.profile import CALL_MARK
 from selfconf.model.term import IRI
-from selfconf.protocol.keys import Keys, component_chunk, operation_of
-from selfconf.sdk.code_thread import CodeThread
+from selfconf.protocol.keys import component_chunk, operation_of
 from selfconf.sdk.component import Refused, Signal
 from selfconf.sdk.component_code import ComponentCode
+from selfconf.sdk.component_context import ComponentContext
 from selfconf.sdk.operations.operation_signals import (
     LONGEST_PATIENCE,
     MOST_CALLS,
@@ -61,30 +60,22 @@ class OfferedOperations:
 
     def __init__(
         self,
-        bus: Bus,
-        keys: Keys,
-        thread: CodeThread,
-        profile: Profile,
+        context: ComponentContext,
         signals: OperationSignals,
         code: ComponentCode,
-        fields: Mapping[IRI, SignalFields],
         callers: Callable[[str], frozenset[IRI]],
-        malformed: Callable[[str], None],
     ) -> None:
-        """`callers` says who may call an operation, by the name of its output.
-
-        `fields` are those of the kinds of requests and responses; `malformed` hears what is wrong with an answer of
-        this component.
-        """
-        self._bus, self._thread, self._profile, self._code = bus, thread, profile, code
-        self._signals, self._callers, self._malformed = signals, callers, malformed
-        self._offered = operation_fields(profile.operations, fields)
+        """`callers` says who may call an operation, by the name of its output."""
+        self._bus, self._thread, self._profile, self._code = context.bus, context.thread, context.profile, code
+        self._signals, self._callers, self._malformed = signals, callers, context.malformed
+        self._offered = operation_fields(self._profile.operations, context.fields)
         self._seen: deque[tuple[IRI, str, int]] = deque(maxlen=MOST_REMEMBERED)
         """The latest requests, by caller, its life, and the number of the stamp: one that is doubled is not served."""
         self._requests = 0
         """How many requests wait for the code."""
         self._promised: set[_Promise] = set()
-        self._served = bus.serve(keys.operations(profile.component), self._asked) if self._offered else lambda: None
+        key = context.keys.operations(self._profile.component)
+        self._served = self._bus.serve(key, self._asked) if self._offered else lambda: None
 
     def callers_changed(self) -> None:
         """Cancel what was promised to components that are connected no more."""

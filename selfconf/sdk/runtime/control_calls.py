@@ -12,16 +12,15 @@ import os
 import socket
 from collections.abc import Callable
 
-from selfconf.bus.port import Bus, Request
+from selfconf.bus.port import Request
 from selfconf.errors import PeerError
-from selfconf.model.profile import Profile
-from selfconf.model.term import IRI
 from selfconf.model.wording import sayable
-from selfconf.protocol.activation import Activation, Hold
+from selfconf.protocol.activation import Hold
 from selfconf.protocol.codec import decode, encode
-from selfconf.protocol.keys import Keys, call_of, owner_of, task_name
+from selfconf.protocol.keys import call_of, owner_of, task_name
 from selfconf.protocol.messages import Apply, CallAnswer, Claim, Release, Reserve, StateOf, Verdict
 from selfconf.sdk.component_code import ComponentCode
+from selfconf.sdk.component_context import ComponentContext
 from selfconf.sdk.inputs import InputFollower
 from selfconf.sdk.outputs import Outputs
 from selfconf.termination import resident_memory
@@ -42,23 +41,20 @@ class CallAnswers:
 
     def __init__(
         self,
-        bus: Bus,
-        component: IRI,
-        life: str,
-        activation: Callable[[], Activation],
+        context: ComponentContext,
         stopping: Callable[[], bool],
         code: ComponentCode,
         inputs: InputFollower,
         outputs: Outputs,
     ) -> None:
-        """`activation` tells for which tasks the component is held now, and `stopping` whether it comes to rest.
+        """`stopping` tells whether the component comes to rest.
 
         Its age is counted from here on.
         """
-        self._bus, self._component, self._life = bus, component, life
-        self._activation, self._stopping = activation, stopping
+        self._bus, self._component, self._life = context.bus, context.profile.component, context.life
+        self._activation, self._stopping = context.activation, stopping
         self._code, self._inputs, self._outputs = code, inputs, outputs
-        self._began = bus.now()
+        self._began = context.bus.now()
 
     def answer(
         self, verdict: Verdict, task: str, detail: str = "", *, measured: bool = False, by: Hold | None = None
@@ -115,17 +111,14 @@ class ControlCalls:
 
     def __init__(
         self,
-        bus: Bus,
-        keys: Keys,
-        profile: Profile,
-        life: str,
+        context: ComponentContext,
         answers: CallAnswers,
         obey: Callable[[Reserve | Apply | Release, Reply], None],
     ) -> None:
         """`obey` replies once a call is carried out. It raises PeerError where too many calls wait for that."""
-        self._keys, self._profile, self._life, self._answers = keys, profile, life, answers
-        self._obey = obey
-        self.close = bus.serve(keys.call(profile.component), self.receive)
+        self._keys, self._profile, self._life = context.keys, context.profile, context.life
+        self._answers, self._obey = answers, obey
+        self.close = context.bus.serve(self._keys.call(self._profile.component), self.receive)
 
     def receive(self, request: Request) -> None:
         """Answer one request of the bus."""

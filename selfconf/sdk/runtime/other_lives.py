@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from selfconf.bus.port import Bus, Undo
+from selfconf.bus.port import Undo
 from selfconf.protocol.keys import life_of
+from selfconf.sdk.component_context import ComponentContext
 from selfconf.sdk.outputs import SIGNALS_FIRST
 
 LOOKS_FOR_OTHERS = (0.0, 1.0)
@@ -22,11 +23,12 @@ LIVES_CALL = 3.0
 class OtherLives:
     """Looks for the other lives of one component."""
 
-    def __init__(self, bus: Bus, lives: str, life: str, outlived: Callable[[str], None]) -> None:
-        """`lives` is the key of all lives of the component; `outlived` hears of a smaller one than `life`."""
-        self._bus, self._lives, self._life, self._outlived = bus, lives, life, outlived
+    def __init__(self, context: ComponentContext, outlived: Callable[[str], None]) -> None:
+        """`outlived` hears of a life with a smaller name."""
+        self._bus, self._life, self._outlived = context.bus, context.life, outlived
+        self._lives = context.keys.lives(context.profile.component)
         self._unfollow: Undo | None = None
-        self._undo_looks = [bus.later(seconds, self._look) for seconds in LOOKS_FOR_OTHERS]
+        self._undo_looks = [self._bus.later(seconds, self._look) for seconds in LOOKS_FOR_OTHERS]
 
     def follow(self, held: bool) -> None:
         """Follow the lives of the component as long as it is held for a task."""

@@ -38,6 +38,7 @@ from selfconf.protocol.messages import (
 from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import Component
 from selfconf.sdk.component_code import ComponentCode
+from selfconf.sdk.component_context import ComponentContext
 from selfconf.sdk.inputs import InputEvents, InputFollower, Inputs
 from selfconf.sdk.operations import NeededOperations, OfferedOperations, OperationSignals
 from selfconf.sdk.outputs import SIGNALS_FIRST, Outputs
@@ -93,12 +94,12 @@ class ComponentRuntime:
         self.activation = Activation()
         self._superseded, self._told_restless = superseded, restless
         thread = code_thread or CodeThread(inline=True)
+        context = ComponentContext(
+            bus, keys, profile, self.life, thread, fields or {}, lambda: self.activation, self.fail
+        )
         self.code = ComponentCode(
-            bus,
-            thread,
-            profile,
+            context,
             component,
-            self.fail,
             woken=self._woken,
             restless=self._restless,
             rests=lambda: self.offered_operations.end(),
@@ -114,40 +115,24 @@ class ComponentRuntime:
         self._pending = 0
         """How many calls were not answered yet."""
         component._runtime = self
-        known, malformed = fields or {}, partial(self.fail, cause=Cause.MALFORMED)
-        self.outputs = Outputs(bus, keys, profile, self.life, lambda: self.code.active, known, malformed)
+        self.outputs = Outputs(context, lambda: self.code.active)
         heard = InputEvents(self.code.deliver, self._report_silence, self.code.unfed)
         self.inputs: InputFollower = inputs or Inputs(bus, keys, thread, profile, heard, self.code.read_value)
         signals = OperationSignals(profile.component, self.life)
-        self.offered_operations = OfferedOperations(
-            bus, keys, thread, profile, signals, self.code, known, self.callers, malformed
-        )
-        self.needed_operations = NeededOperations(bus, keys, thread, profile, signals, self.code, known, malformed)
+        self.offered_operations = OfferedOperations(context, signals, self.code, self.callers)
+        self.needed_operations = NeededOperations(context, signals, self.code)
         self.supervision = Supervision(bus, self._orphaned)
         self._fail = bus.publisher(keys.fail(profile.component), Urgency.EVENT)
         self._waiting = WaitingTasks(
-            bus,
-            keys,
-            profile.component,
-            self.life,
-            activation=lambda: self.activation,
+            context,
             become=self._keep,
             ask_holder=lambda task, why: self._put_fail(Cause.YIELD, why, task),
             let_go=self._let_go,
         )
-        self._answers = CallAnswers(
-            bus,
-            profile.component,
-            self.life,
-            lambda: self.activation,
-            lambda: self.stopping,
-            self.code,
-            self.inputs,
-            self.outputs,
-        )
-        self.calls = ControlCalls(bus, keys, profile, self.life, self._answers, self._obey_at_rest)
+        self._answers = CallAnswers(context, lambda: self.stopping, self.code, self.inputs, self.outputs)
+        self.calls = ControlCalls(context, self._answers, self._obey_at_rest)
         self._token = bus.announce(keys.life(profile.component, self.life))  # last: from now on it is called
-        self._other_lives = OtherLives(bus, keys.lives(profile.component), self.life, self._outlived)
+        self._other_lives = OtherLives(context, self._outlived)
 
     @property
     def active(self) -> bool:

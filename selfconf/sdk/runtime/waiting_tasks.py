@@ -9,14 +9,14 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import partial
 
-from selfconf.bus.port import Bus, Publisher, Undo, Urgency
+from selfconf.bus.port import Publisher, Undo, Urgency
 from selfconf.bus.timer import Timer
-from selfconf.model.term import IRI
 from selfconf.protocol import activation as table
 from selfconf.protocol.activation import Activation
 from selfconf.protocol.codec import encode
-from selfconf.protocol.keys import Keys, task_name
+from selfconf.protocol.keys import task_name
 from selfconf.protocol.messages import Free
+from selfconf.sdk.component_context import ComponentContext
 
 OFFER = 0.2
 """Seconds for which a component that has become free is kept for the task that has waited for it first."""
@@ -29,27 +29,24 @@ class WaitingTasks:
 
     def __init__(
         self,
-        bus: Bus,
-        keys: Keys,
-        component: IRI,
-        life: str,
-        activation: Callable[[], Activation],
+        context: ComponentContext,
         become: Callable[[Activation], None],
         ask_holder: Callable[[str, str], None],
         let_go: Callable[[Sequence[str], str], None],
     ) -> None:
-        """`activation` tells which tasks hold the component and wait for it now, and `become` has it kept for one.
+        """`become` has the component kept for a task.
 
         `ask_holder` asks a task that holds it to yield, and says why; `let_go` takes it from some tasks.
         """
-        self._bus, self._keys, self._component, self._life = bus, keys, component, life
-        self._activation, self._become, self._ask_holder, self._let_go = activation, become, ask_holder, let_go
+        self._bus, self._keys = context.bus, context.keys
+        self._component, self._life = context.profile.component, context.life
+        self._activation, self._become, self._ask_holder, self._let_go = context.activation, become, ask_holder, let_go
         self._closed = False
         self._end_of_offer: Undo = lambda: None
         """Undoes the end of the last offer."""
         self._free: Publisher | None = None
         """What tells tasks that wait for the component that it is free, once one has waited."""
-        self._preemption = Timer(bus, YIELDING, self._preempt)
+        self._preemption = Timer(context.bus, YIELDING, self._preempt)
         """Set while a task of higher priority waits for those that hold the component to yield."""
 
     def close(self) -> None:
