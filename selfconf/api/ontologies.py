@@ -50,6 +50,6 @@ def with_ontologies(dataset: Dataset, question: Question, ontologies: Sequence[P
     for path in files.ontology_files(ontologies):
         document = turtle.read_ontology(*file_text(path))
         prefixes |= document.prefixes
-        dataset.add(IRI.unchecked(path.resolve().as_uri()), document.triples())
+        dataset.add(IRI.unchecked(files.base(path)), document.triples())
     lent = {name: base for name, base in prefixes.items() if name and name not in QUERY_PREFIXES}
     return dataset, replace(question, prefixes=lent)

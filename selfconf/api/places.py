@@ -13,6 +13,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
+from selfconf import files
 from selfconf.api.document_texts import GRAPH, KEPT_TEXTS
 from selfconf.model.immutable import replace
 from selfconf.model.left_out import LeftOut
@@ -159,6 +160,6 @@ def _read_again(source: str) -> _TextReadAgain | None:
     try:
         if path.stat().st_size > LARGEST_REREAD:
             return None
-        return _TextReadAgain(path.read_text("utf-8"), source, path.resolve().as_uri())
+        return _TextReadAgain(path.read_text("utf-8"), source, files.base(path))
     except (OSError, UnicodeDecodeError):
         return None

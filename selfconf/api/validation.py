@@ -155,4 +155,4 @@ def _read(name: str) -> SourceText:
 
 
 def _load(path: Path) -> SourceText:
-    return SourceText(str(path), files.read_bounded(path), path.resolve().as_uri())
+    return SourceText(str(path), files.read_bounded(path), files.base(path))

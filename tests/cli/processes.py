@@ -11,7 +11,8 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ import pytest
 
 from selfconf.access import Authority, PrincipalKind, introduce
 from selfconf.access.certificate_files import HOST_AUTHORITY
+from selfconf.api.membership import Membership
 from selfconf.bus.credentials import Credentials
 from selfconf.bus.port import Replies
 from selfconf.bus.zenoh import ZenohBus, client
@@ -309,6 +311,17 @@ class Home:
         if shown is not None:
             introduce(bus, self.ecology, shown)
         return bus
+
+    @contextmanager
+    def mute_configurator(self) -> Iterator[str]:
+        """A configurator that lives and does not answer meanwhile; its name."""
+        name = Membership(self.ecology, (), self.credentials()).configurator_name() or "mute"
+        node = self.node()
+        try:
+            node.announce(self.keys.configurator_life(name, "1"))
+            yield name
+        finally:
+            node.close()
 
     # Observing.
 

@@ -7,7 +7,6 @@ import sys
 
 import pytest
 
-from selfconf.api.membership import Membership
 from selfconf.api.tasks import released_components
 from selfconf.cli import status
 from selfconf.model.term import IRI
@@ -94,13 +93,8 @@ def test_where_nothing_is_deployed_both_say_so(inhabited: Home, capsys: pytest.C
 def test_where_a_configurator_does_not_answer_it_is_not_said_that_nothing_is_deployed(
     inhabited: Home, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    member = Membership(inhabited.ecology, (), inhabited.credentials())
-    mute, name = inhabited.node(), member.configurator_name() or "mute"
-    try:
-        mute.announce(inhabited.keys.configurator_life(name, "1"))
+    with inhabited.mute_configurator() as name:
         outcome = run(capsys, "status", *inhabited.arguments())
-    finally:
-        mute.close()
     assert outcome.is_one_sentence(f"the configurator '{name}' lives, but does not answer")
 
 

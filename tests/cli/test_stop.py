@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from selfconf.api.membership import Membership
 from tests.cli.command import run
 from tests.cli.processes import Home
 
@@ -27,13 +26,8 @@ def test_what_answers_is_taken_down_though_a_configurator_lives_that_does_not(
 ) -> None:
     program = inhabited.run()
     program.act("running")
-    member = Membership(inhabited.ecology, (), inhabited.credentials())
-    mute, name = inhabited.node(), member.configurator_name() or "mute"
-    try:
-        mute.announce(inhabited.keys.configurator_life(name, "1"))
+    with inhabited.mute_configurator() as name:
         outcome = run(capsys, "stop", *inhabited.arguments())
-    finally:
-        mute.close()
     assert outcome.code == 2
     assert f"the configurator '{name}' lives, but does not answer" in outcome.err
     assert program.ended() == 0

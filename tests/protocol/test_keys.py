@@ -9,7 +9,7 @@ import zenoh
 from hypothesis import given
 from hypothesis import strategies as st
 
-from selfconf.bus.key_expressions import intersects
+from selfconf.bus.memory.key_expressions import intersects
 from selfconf.errors import AuthorError, PeerError
 from selfconf.model.profile import LONGEST_PORT_NAME
 from selfconf.model.term import IRI

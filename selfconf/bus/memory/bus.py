@@ -6,7 +6,7 @@ import itertools
 from collections.abc import Callable
 from typing import TYPE_CHECKING, TypeVar
 
-from selfconf.bus.key_expressions import intersects
+from selfconf.bus.memory.key_expressions import intersects
 from selfconf.bus.memory.questions import MemoryQuestion, MemoryRequest
 from selfconf.bus.port import Replies, Sample, Urgency
 from selfconf.model.immutable import immutable

@@ -6,7 +6,7 @@ import zenoh
 from hypothesis import given
 from hypothesis import strategies as st
 
-from selfconf.bus.key_expressions import intersects
+from selfconf.bus.memory.key_expressions import intersects
 
 chunks = st.sampled_from(["a", "b", "ab", "a$*", "ab$*", "@ctl", "*", "**"])
 
