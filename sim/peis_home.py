@@ -161,7 +161,10 @@ def main() -> int:
     parser.add_argument("--gui", action="store_true")
     parser.add_argument("--eyes", action="store_true", help="two cameras in place of the person tracker")
     given = parser.parse_args()
-    apartment = read_apartment()
+    try:
+        apartment = read_apartment()
+    except ApartmentError as error:
+        parser.error(f"the apartment: {error}")
     if given.seed < 0 or not given.speed > 0:
         parser.error("--seed is a whole number from zero on, and --speed is more than zero")
     try:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from selfconf import library
@@ -38,13 +39,16 @@ _DECLARATIONS = re.compile(r"\bprefix\s+([^\s:]*)\s*:\s*<([^<>]*)>", re.IGNORECA
 _NAMED = {base: re.compile(f"<({re.escape(base)}[^<>]*)>") for base in _PREFIXES}
 
 
-def undeclared_terms(triples: Iterable[tuple[Term, IRI, Term]]) -> list[str]:
-    """The predicates and types of `sc:` and `sh:` that no ontology declares, as CURIEs, sorted."""
+def undeclared_terms(triples: Iterable[tuple[Term, IRI, Term]], prefixes: Mapping[str, str] = _PREFIXES) -> list[str]:
+    """The predicates and types of `sc:` and `sh:`, or by other prefixes, that no ontology declares, as sorted CURIEs.
+
+    `prefixes` has prefixes by their namespaces, of which `rob:` may be one.
+    """
     found: set[str] = set()
     for _, predicate, value in triples:
         used = (predicate, value) if predicate == TYPE else (predicate,)
         for term in used:
-            for base, prefix in _PREFIXES.items():
+            for base, prefix in prefixes.items():
                 if isinstance(term, IRI) and term.startswith(base) and not _declared(term, base):
                     found.add(prefix + term[len(base) :])
     return sorted(found)
@@ -54,6 +58,12 @@ def unknown_in_task(task: TaskSpecification) -> Iterator[str]:
     """A sentence about the document of a template or task, if it uses terms that there are not."""
     document = task.document.document
     yield from _sentence(document.source, undeclared_terms(document.triples()))
+
+
+def unknown_in_file(path: Path) -> Iterator[str]:
+    """A sentence about a file of Turtle, if it uses terms that there are not, also of `rob:`."""
+    triples = turtle.parse(path.read_bytes(), str(path)).triples()
+    yield from _sentence(str(path), undeclared_terms(triples, _PREFIXES | {ROB.base: "rob:"}))
 
 
 def unknown_in_query(text: str) -> Iterator[str]:

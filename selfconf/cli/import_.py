@@ -57,6 +57,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """0 if all was imported that can be read, 1 if there was nothing to import, 2 if some source cannot be read."""
+    from selfconf.api.unknown_terms import unknown_in_file
+
     report = _imported(given)
     for unreadable in report.unreadable:
         complain(str(unreadable) if unreadable.file else f"selfconf import: {unreadable}")  # a place comes first
@@ -64,6 +66,9 @@ def run(given: argparse.Namespace) -> int:
         complain(str(each))
     if not (report.files or report.unreadable or report.left_out):
         complain(f"selfconf import: {_looked_for(given)}")
+    for file in report.files:
+        for unknown in unknown_in_file(file.path):
+            complain(unknown)
     if given.format == "json":
         display_json(_body(report))
     else:

@@ -175,5 +175,6 @@ def as_python(term: Term) -> bool | int | float | str:
         return term.lexical
     number = plain_number(term)
     if number is None:
-        raise ValueError(f"{term.lexical!r} is no xsd:{term.datatype.short}")
+        limitless = term.datatype in FLOATING and in_lexical_space(term.lexical, term.datatype)
+        raise ValueError(f"{term.lexical!r} is no {'finite ' * limitless}xsd:{term.datatype.short}")
     return number

@@ -89,10 +89,17 @@ class Apartment:
 def read_apartment(source: Path | Graph = PEIS_HOME) -> Apartment:
     """Read the apartment from a Turtle file or a graph that holds exactly one home:Apartment.
 
-    Raises ApartmentError, which names the subject and the property, if the geometry is incomplete.
+    Raises ApartmentError, which names the subject and the property, if the geometry is incomplete; a file that cannot
+    be read is a subject, too.
     """
-    graph = source if isinstance(source, Graph) else Graph().parse(source, format="turtle")
-    return _Reader(graph).apartment()
+    return _Reader(source if isinstance(source, Graph) else _parsed(source)).apartment()
+
+
+def _parsed(path: Path) -> Graph:
+    try:
+        return Graph().parse(data=path.read_bytes(), format="turtle")
+    except (OSError, SyntaxError, ValueError, AssertionError) as error:  # what rdflib raises for what is no Turtle
+        raise ApartmentError(str(path), "the file", f"cannot be read: {' '.join(str(error).split())}") from None
 
 
 class _Reader:

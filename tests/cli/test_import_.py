@@ -50,6 +50,15 @@ def test_what_is_imported_is_listed_and_what_is_left_out_is_named(
     assert "ads/lamp.ttl  unchanged  1" in again.out
 
 
+def test_misspelt_terms_that_are_copied_are_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    sc, rob = "https://w3id.org/selfconf#", "https://w3id.org/selfconf/robotics#"
+    said = f"<urn:lamp> a <{sc}Component>, <{rob}Tuner> ; <{rob}plcae> <urn:kitchen> ; <{sc}preferense> 5 ."
+    (tmp_path / "lamp.trig").write_text(f"<urn:graph> {{ {said} }}")
+    outcome = run(capsys, "import", "rdf", str(tmp_path), "--out", str(tmp_path / "ads"))
+    assert outcome.code == 0
+    assert "lamp.ttl: no ontology has the terms rob:plcae, sc:preferense, so they say nothing" in outcome.err
+
+
 def test_the_summary_as_json_keeps_to_its_schema(things: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name, text in {"lamp2.json": LAMP, "bad.json": "{", "none.json": "5"}.items():
         (things / name).write_text(text)

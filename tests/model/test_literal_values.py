@@ -150,13 +150,19 @@ def test_a_term_is_a_truth_value_a_number_or_its_text(term: Term, value: object)
         typed("1.0", "unsignedInt"),
         typed("-1", "unsignedInt"),
         typed("", "decimal"),
-        typed("NaN", "double"),
+        typed("infinite", "double"),
         typed("yes", "boolean"),
     ],
     ids=str,
 )
 def test_a_literal_that_is_none_of_its_datatype_is_an_error(literal: Literal) -> None:
     with pytest.raises(ValueError, match=f"is no xsd:{literal.datatype.short}"):
+        as_python(literal)
+
+
+@pytest.mark.parametrize("literal", [typed(text, "double") for text in ("INF", "-INF", "NaN", "1e999")], ids=str)
+def test_of_a_literal_without_a_limit_it_is_said_that_it_is_not_finite(literal: Literal) -> None:
+    with pytest.raises(ValueError, match="is no finite xsd:double"):
         as_python(literal)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 from rdflib import RDF, SKOS, BNode, Graph, Literal, URIRef
 
@@ -102,6 +104,25 @@ def test_a_place_that_goals_may_name_needs_a_standing_point(plan: Graph) -> None
     plan.add((HOME["tuner-spot"], SKOS.notation, Literal("TUNER")))
     with pytest.raises(ApartmentError, match="home:tuner-spot: home:standingPoint is missing"):
         read_apartment(plan)
+
+
+@pytest.mark.parametrize(
+    ("octets", "reason"),
+    [
+        (b"@prefix : <urn:x#> .\n:a :b [ .", "at line 2"),
+        (b"<urn:a> <urn:b> 'x", "Quote expected"),
+        (b"<urn:a> <urn:b> 'K\xfcche' .", "'utf-8' codec"),
+        (None, "No such file or directory"),
+    ],
+)
+def test_a_file_that_cannot_be_read_is_named(octets: bytes | None, reason: str, tmp_path: Path) -> None:
+    path = tmp_path / "home.ttl"
+    if octets is not None:
+        path.write_bytes(octets)
+    with pytest.raises(ApartmentError) as caught:
+        read_apartment(path)
+    assert str(caught.value).startswith(f"{path}: the file cannot be read: ")
+    assert reason in str(caught.value)
 
 
 def test_a_graph_without_an_apartment_is_refused() -> None:
