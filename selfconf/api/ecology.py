@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar, overload
 
 from selfconf.api.arguments import checked_rows, checked_seconds
 from selfconf.api.places import with_lines
@@ -77,7 +77,13 @@ class Solutions(Tabular, Sequence[Mapping[str, Term]]):
     cut: bool = False
     """Whether there are more solutions than were asked for."""
 
-    def __getitem__(self, number: Any) -> Any:
+    @overload
+    def __getitem__(self, number: int) -> Mapping[str, Term]: ...
+
+    @overload
+    def __getitem__(self, number: slice) -> Sequence[Mapping[str, Term]]: ...
+
+    def __getitem__(self, number: int | slice) -> Mapping[str, Term] | Sequence[Mapping[str, Term]]:
         return self._rows[number]
 
     def __len__(self) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import overload
 
 from selfconf import files, library
 from selfconf.api.arguments import Paths, checked_flag, checked_path, listed_paths
@@ -36,7 +36,13 @@ class ValidationReport(Tabular, Report, Sequence[Diagnostic]):
     def __len__(self) -> int:
         return len(self.diagnostics)
 
-    def __getitem__(self, number: Any) -> Any:
+    @overload
+    def __getitem__(self, number: int) -> Diagnostic: ...
+
+    @overload
+    def __getitem__(self, number: slice) -> Sequence[Diagnostic]: ...
+
+    def __getitem__(self, number: int | slice) -> Diagnostic | Sequence[Diagnostic]:
         return self.diagnostics[number]
 
     def __iter__(self) -> Iterator[Diagnostic]:

@@ -75,7 +75,7 @@ class MemoryRun:
     """
 
     def __init__(self, ecology: MemoryEcology, task: TaskSpecification, method: Method, policy: Policy, wait: bool):
-        self._ecology, self._task = ecology, task.document
+        self._ecology, self._task, self._texts = ecology, task.document, task.texts
         self.events: list[AnsweredEvent] = []
         """What has happened, in order; the same values as those of `Run.events`."""
         self.refusal: Refusal | Undecided | None = None
@@ -139,7 +139,8 @@ class MemoryRun:
         ecology = searched_ecology(refusal)
         if self._explained is None or self._explained[:2] != (refusal, ecology):
             limit, described = TimeLimit(None), self._ecology.advertisements
-            found = refusal_with_places(self._composer, ecology, refusal, self._method, limit, described)
+            texts = (*self._texts, *self._ecology.texts)
+            found = refusal_with_places(self._composer, ecology, refusal, self._method, limit, described, texts)
             self._explained = refusal, ecology, found
         return self._explained[2]
 
@@ -181,6 +182,8 @@ class MemoryEcology:
         self._shelf = _MemoryShelf()
         node = self.network.node()
         self._documents: dict[IRI, Document] = {}
+        self.texts: list[str] = []
+        """The texts of advertisements that are in no file, in which lines are looked up."""
         self.complaints: list[str] = []
         """Why composites do not live."""
         self._composites = Composites(
@@ -222,6 +225,7 @@ class MemoryEcology:
         life = f"life{len(self.network.nodes)}"
         signals = {signal for port in found.profile.outputs for signal in port.signals}
         text = text_of(type(component).advertisement_path() if advertisement is None else advertisement)
+        self.texts += text.in_no_file
         fields = files.signal_fields([*self._ontologies, *library.ontologies()], signals, [text]) if signals else {}
         runtime = ComponentRuntime(bus, Keys(ECOLOGY_NAME), found.profile, component, life, fields=fields)
         self._runtimes.append((runtime, bus))
@@ -229,9 +233,10 @@ class MemoryEcology:
 
     def advertise(self, advertisement: str | Path) -> IRI:
         """Advertise a component that no process runs; returns its IRI."""
-        found = _advertisement(None, advertisement)
+        found, text = _advertisement(None, advertisement), text_of(advertisement)
+        self.texts += text.in_no_file
         if found.profile.inside is not None:
-            self._documents[found.component] = parse(*text_of(advertisement))
+            self._documents[found.component] = parse(*text)
         self._shelf.put(found)
         return found.component
 

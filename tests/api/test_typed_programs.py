@@ -61,7 +61,36 @@ def from_docstring(documented: type) -> str:
     return "from selfconf import join, template\n" + "".join(lines)
 
 
-PROGRAMS = {"answers": ANSWERS, "events": EVENTS, "readme": from_readme(), "run": from_docstring(Run)}
+READING = """
+from selfconf import values
+
+def solutions_of(found: values.Solutions) -> str:
+    first = found[0]["c"]
+    assert_type(first, values.Term)
+    assert_type(found[:2], Sequence[Mapping[str, values.Term]])
+    return first.short if isinstance(first, sc.IRI) else str(first)
+
+def problem_of(report: values.ValidationReport) -> str:
+    assert_type(report[0], values.Diagnostic)
+    return "" if report[0].severity is values.Severity.WARNING else report[0].message
+
+def what_is_wrong(miss: values.NearMiss) -> str:
+    match miss.obstacle:
+        case values.WrongType(wanted=wanted):
+            return wanted.short
+        case values.PropertyUnmet(faults=faults):
+            return ", ".join(type(fault).__name__ for fault in faults)
+    return str(miss)
+"""
+READING = "from collections.abc import Mapping, Sequence\nfrom typing_extensions import assert_type\n" + READING
+
+PROGRAMS = {
+    "answers": ANSWERS,
+    "reading": READING,
+    "events": EVENTS,
+    "readme": from_readme(),
+    "run": from_docstring(Run),
+}
 
 
 @pytest.fixture(scope="module")

@@ -250,3 +250,14 @@ def test_what_is_no_task_and_no_policy_is_refused_in_a_sentence() -> None:
         ecology.run("task.ttl")  # type: ignore[arg-type]  # that is what is tested
     with pytest.raises(ProgrammerError, match="there is no policy 'mend'"):
         ecology.run(sc.template(TASK), policy="mend")
+
+
+def test_a_refusal_names_the_line_in_a_text_where_a_role_or_component_is_described() -> None:
+    ecology = MemoryEcology()
+    ecology.add(Clock("only"), CLOCK.replace("NAME", "a").replace(":Clock", ":Clok"))
+    ecology.add(Screen(), SCREEN)
+    run = ecology.run(sc.template(TASK))
+    assert ecology.until(lambda: run.ended)
+    assert isinstance(run.refusal, sc.Refusal)
+    assert [str(reason.place) for reason in run.refusal.reasons] == ["<text>:5"]
+    assert [str(miss.place) for miss in run.refusal.near_misses] == ["<text>:4"]
