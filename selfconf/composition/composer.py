@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Mapping, Sequence, Set
+from typing import TYPE_CHECKING
 
 from selfconf.composition.outside import inside_alone, with_outside, with_outside_candidate, with_outside_player
 from selfconf.composition.searches import Searches, Strategy
@@ -23,7 +24,6 @@ from selfconf.model.partition import ANY_VALUE, Barred, Candidate, NearMiss, Par
 from selfconf.model.refusal import Outcome, Refusal, TooFewEligible, ValueUnknown
 from selfconf.model.requirement import InputFed, RolePlayed
 from selfconf.model.term import IRI
-from selfconf.protocol.messages import Wire
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import AdvertisementIndex, Partitioner, near_misses
 from selfconf.rdf.tasks import TaskDocument
@@ -34,6 +34,9 @@ from selfconf.search.reduction import recruits_that_matter
 from selfconf.search.relaxations import NEAR, with_relaxations
 from selfconf.search.strategies import possible
 from selfconf.search.what_if import consequences
+
+if TYPE_CHECKING:
+    from selfconf.protocol.messages import Wires
 
 HINT_STEPS = 100_000
 """Steps at most for each search of the question whether other reasoning would do: what is refused need not be easy."""
@@ -273,11 +276,13 @@ class Composer:
         problem = self._problem(self.partition(ecology), lost, None)
         return list(consequences(problem, configuration, self.searches.after))
 
-    def standby(self, configuration: Configuration, lost: frozenset[IRI]) -> dict[IRI, dict[str, tuple[Wire, ...]]]:
+    def standby(self, configuration: Configuration, lost: frozenset[IRI]) -> Mapping[IRI, Wires]:
         """For each component and input of a configuration, the outputs of the next candidates that could feed it.
 
         At most `STANDBY` candidates for each role that feeds, none of them lost.
         """
+        from selfconf.protocol.messages import Wire  # which takes a while to load, and only a task that runs needs it
+
         problem = Problem(self._searched, self._partition.without(lost), self.hierarchy)
         role_of = {component: each.role for each in configuration.assignments for component in each.components}
         playing = {*role_of, self.outside}
