@@ -10,7 +10,7 @@ import math
 import re
 import time
 from collections import Counter
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
 import rdflib
@@ -40,6 +40,8 @@ from selfconf.rdf.turtle import Node
 from selfconf.rdf.violation_words import violation_words
 
 Focus = TypeVar("Focus", bound=Node)
+_PyshaclResults = Sequence[tuple[str, rdflib.term.Node, Iterable[tuple[Any, Any, Any]]]]
+"""Results as pySHACL hands them on: a text, the node of the result, and the triples about it and its details."""
 SHAPE_SECONDS = 120.0
 """Processor time that judging by one shape may take."""
 FAILURE_SECONDS = 0.12
@@ -107,13 +109,8 @@ def violations(
         # The limit last: the processor time of a thread that judges meanwhile, and is waited for, would count.
         with corrected(), processor_limit(SHAPE_SECONDS):
             judge = _Judge(subjects, shapes, shape)
-            found: dict[Focus, list[ShapeViolated | NotJudged]] = {}
             sized = ((judge.size(node) if sizes is None else sizes[node], node) for node in focus)
-            for size, node in sorted(sized):
-                wrong = judge.wrong(node, size)
-                if wrong:
-                    found[node] = wrong
-            return found
+            found = {node: judge.wrong(node, size) for size, node in sorted(sized)}
     except TimeUp:
         raise TemplateError(f"{called} takes more than {SHAPE_SECONDS:g} s of processor time", file=source) from None
     except MatchTooCostly as error:  # with nothing said, so that the text is the shape's own
@@ -122,6 +119,12 @@ def violations(
         raise TemplateError(f"{called} cannot be judged: {first_line(str(error.message))}", file=source) from error
     except _ILL_FORMED as error:
         raise TemplateError(f"{called} is not well-formed: {reason_of(error)}", file=source) from error
+    # Worded here, where an error of the wording is not taken for one of the shape or of pySHACL.
+    return {
+        node: [wrong] if isinstance(wrong, ShapeViolated | NotJudged) else [*_details(wrong, rdflib_term(node))]
+        for node, wrong in found.items()
+        if wrong is not None
+    }
 
 
 class _Judge:
@@ -136,9 +139,9 @@ class _Judge:
         assert validator.shacl_graph.shapes  # looks at all of them: what is ill-formed shows
         self._graph, self._data, self._executor = subjects, data, validator.make_executor()
         self._shape = validator.shacl_graph.lookup_shape_from_node(rdflib.URIRef(shape))
-        list(self._violations(_NOTHING))  # what is at fault with nothing said is the shape; and queries are read here
+        self._results(_NOTHING)  # what is at fault with nothing said is the shape; and queries are read here
         began = time.process_time()
-        list(self._violations(_NOTHING))
+        self._results(_NOTHING)
         self._shares = _Shares(time.process_time() - began)
 
     def size(self, node: Node) -> int:
@@ -148,26 +151,26 @@ class _Judge:
             default=0,
         )
 
-    def wrong(self, node: Node, size: int) -> list[ShapeViolated | NotJudged]:
-        """What keeps a node of some size from conforming; nothing if it conforms."""
+    def wrong(self, node: Node, size: int) -> _PyshaclResults | ShapeViolated | NotJudged | None:
+        """What keeps a node of some size from conforming, or from being judged; None if it conforms."""
         try:
-            return list(self._shares.judged(size, lambda: list(self._violations(node))))
+            return self._shares.judged(size, lambda: self._results(node))
         except MatchTooCostly as error:
-            return [NotJudged(str(error))]
+            return NotJudged(str(error))
         except ProcessorTimeUp:
-            return [NotJudged("what it says takes too long to be judged by the shape")]
+            return NotJudged("what it says takes too long to be judged by the shape")
         except _SHAPE_AT_FAULT:
             raise
         except _ILL_FORMED as error:
             if _TOO_DEEP.match(str(error)):  # only where there are values so deep; a shape may come back to itself
-                return [NotJudged("the shape leads deeper into what it says than pySHACL follows")]
+                return NotJudged("the shape leads deeper into what it says than pySHACL follows")
             if isinstance(error, _NO_ORDER):
-                return [ShapeViolated("Value cannot be compared")]
-            return [NotJudged(f"pySHACL stops at what it says ({reason_of(error)})")]
+                return ShapeViolated("Value cannot be compared")
+            return NotJudged(f"pySHACL stops at what it says ({reason_of(error)})")
 
-    def _violations(self, node: Node) -> Iterable[ShapeViolated]:
+    def _results(self, node: Node) -> _PyshaclResults | None:
         conforms, results = self._shape.validate(self._executor, self._data, focus=rdflib_term(node))
-        return () if conforms and not results else _details(results, rdflib_term(node))
+        return None if conforms and not results else results
 
 
 class _Shares:
@@ -186,8 +189,8 @@ class _Shares:
         self._failures, self._slow = slowness * FAILURE_SECONDS, slowness * SLOW_SECONDS
         self._fine, self._too_large = 0, math.inf
 
-    def judged(self, size: int, judge: Callable[[], Collection[ShapeViolated]]) -> Collection[ShapeViolated]:
-        """What is wrong with a node of some size. Raises ProcessorTimeUp where that takes too long."""
+    def judged(self, size: int, judge: Callable[[], _PyshaclResults | None]) -> _PyshaclResults | None:
+        """What is wrong with a node of some size, or None. Raises ProcessorTimeUp where that takes too long."""
         spent = self._failures < LEAST_SECONDS or not self._slow
         if spent and size > self._fine and size >= self._too_large:
             raise ProcessorTimeUp
@@ -200,7 +203,7 @@ class _Shares:
             self._too_large = min(self._too_large, size)
             raise
         taken = time.process_time() - began
-        if not wrong:
+        if wrong is None:
             self._share = max(self._share, min(2 * taken, MOST_SHARE_SECONDS))
         if taken <= self._share:
             self._fine = max(self._fine, size)
@@ -210,9 +213,7 @@ class _Shares:
         return wrong
 
 
-def _details(
-    results: Iterable[tuple[str, rdflib.term.Node, Iterable[tuple[Any, Any, Any]]]], asked: rdflib.term.Node
-) -> list[ShapeViolated]:
+def _details(results: _PyshaclResults, asked: rdflib.term.Node) -> list[ShapeViolated]:
     """What a node lacks, sorted: of each property shape, and of each constraint on the node itself, one violation."""
     least: dict[tuple[object, ...], ShapeViolated] = {}
     for _, result, triples in results:

@@ -1,7 +1,7 @@
 """What pySHACL finds violated, in the words in which the compiled tests say it (`selfconf.model.property_fault`).
 
-What the author of a shape says goes before (`sh:message`). Of constraints over other shapes pySHACL's own message is
-kept, with names in place of IRIs: it shows what is asked for.
+What the author of a shape says goes before (`sh:message`). Of constraints over other shapes pySHACL's own list of them
+is kept, with names in place of IRIs: it shows what is asked for.
 """
 
 from __future__ import annotations
@@ -39,8 +39,12 @@ _STEPS: Mapping[Node, str] = {
     SH.zeroOrOnePath: "{}?",
 }
 """How a path with one of SHACL's forms is written in SPARQL."""
-_LITERAL = re.compile(r'Literal\("(.*?)"(, (datatype|lang)=[^)]*)?\)')
+_LOGICAL = frozenset(("and", "or", "not", "xone"))
+"""Constraints over other shapes; pySHACL's message lists these behind what it calls the node."""
+_LITERAL = re.compile(r'Literal\("(.*?)"(?: = .*?)?(?:, (?:datatype|lang)=([^)]*))?\)')
 _IRI = re.compile(r"<([^<>\s]+)>")
+_BARE = frozenset(("integer", "decimal", "double", "boolean"))
+"""The datatypes that Turtle writes without quotation marks."""
 
 
 def violation_words(result: ViolationResult, details: Sequence[ViolationResult], asked: Node) -> str:
@@ -58,7 +62,7 @@ def _clause(result: ViolationResult, details: Sequence[ViolationResult], asked: 
         return " and ".join(sorted({_clause(one, (), one[SH.focusNode][0][1], name) for one in details}))
     focus = result[SH.focusNode][0][1]
     whose = f" of {term_in_words(from_rdflib(focus))}" if name and focus != asked else ""
-    return _worded(kind, f"{name}{whose}", result) or _plain(said)
+    return _worded(kind, f"{name}{whose}", result) or _plain(said, kind, f"{name}{whose}", result)
 
 
 def _message(result: ViolationResult) -> str:
@@ -148,7 +152,21 @@ def _path(shapes: Graph, path: Node) -> str:
     return "value"
 
 
-def _plain(message: str) -> str:
-    """A message of pySHACL with literals as they are in Turtle, and with names in place of IRIs."""
-    said = _IRI.sub(lambda found: IRI.unchecked(found[1]).short, _LITERAL.sub(r'"\1"', message))
-    return said.removesuffix(" See details for more information.").removesuffix(".")
+def _plain(message: str, kind: str, name: str, result: ViolationResult) -> str:
+    """A message of pySHACL with literals as they are in Turtle, and with names in place of IRIs.
+
+    One of a constraint over other shapes begins with the name of the path.
+    """
+    said = _IRI.sub(lambda found: IRI.unchecked(found[1]).short, _LITERAL.sub(_literal, message))
+    said = said.removesuffix(" See details for more information.").removesuffix(".")
+    _, must, asked = said.partition(" must ")
+    if kind not in _LOGICAL or not must:
+        return said
+    values = in_words(frozenset(from_rdflib(value) for _, value in result.get(SH.value, ())))
+    return f"{name} is {values}, and must {asked}" if name else f"it must {asked}"
+
+
+def _literal(found: re.Match[str]) -> str:
+    """A literal of a message as it is in Turtle: numbers and truth values stand without quotation marks."""
+    short = IRI.unchecked((found[2] or "").strip("<>")).short.removeprefix("xsd:")
+    return found[1] if short in _BARE else f'"{found[1]}"'

@@ -95,14 +95,14 @@ class Paced:
     def judge(self, size: int, seconds: float, conforms: bool) -> bool:
         """Judge a node; whether it was judged in time."""
 
-        def judged() -> list[ShapeViolated]:
+        def judged() -> list[tuple[str, rdflib.BNode, list[object]]] | None:
             self.now += min(seconds, self.limit)
             if seconds > self.limit:
                 raise ProcessorTimeUp
-            return [] if conforms else [ShapeViolated("no")]
+            return None if conforms else [("no", rdflib.BNode(), [])]
 
         try:
-            return bool(self.shares.judged(size, judged)) is not conforms
+            return (self.shares.judged(size, judged) is None) is conforms
         except ProcessorTimeUp:
             return False
 
@@ -123,6 +123,16 @@ def test_what_does_not_conform_takes_little_however_its_times_are_chosen(
 def test_a_shape_that_is_slow_to_judge_is_judged_of_all_that_conform(monkeypatch: pytest.MonkeyPatch) -> None:
     pace = Paced(monkeypatch)
     assert all(pace.judge(1 + number % 7, 0.03, number % 3 == 0) for number in range(1000))
+
+
+def test_an_error_of_the_wording_is_not_taken_for_one_of_the_component(monkeypatch: pytest.MonkeyPatch) -> None:
+    def mistaken(*_: object) -> str:
+        raise KeyError("wording")
+
+    monkeypatch.setattr(conformance, "violation_words", mistaken)
+    subjects, shapes = rdflib.Graph(), rdflib.Graph().parse(data="<urn:s> <http://www.w3.org/ns/shacl#class> <urn:T> .")
+    with pytest.raises(KeyError, match="wording"):
+        violations(subjects, shapes, IRI("urn:s"), [IRI("urn:a")], "a.ttl")
 
 
 def asking(inner: st.SearchStrategy[str]) -> st.SearchStrategy[str]:

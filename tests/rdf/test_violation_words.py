@@ -39,7 +39,11 @@ def told(shape: str) -> list[str]:
         ("sh:pattern '^a'", "link/n is 7, not like /^a/"),
         ("sh:languageIn ( 'de' )", 'link/n is 7, in none of the languages "de"'),
         ("sh:equals :q", "link/n and q differ by 5"),
-        ("sh:not [ sh:in ( 7 ) ]", 'Node "7" must not conform to shape [ sh:in ( "7" ) ]'),
+        ("sh:not [ sh:in ( 7 'x' true ) ]", 'link/n is 7, and must not conform to shape [ sh:in ( 7 "x" true ) ]'),
+        (
+            "sh:or ( [ sh:minInclusive 8.5 ] [ sh:class :T ] )",
+            "link/n is 7, and must conform to one or more shapes in [ sh:minInclusive 8.5 ] , [ sh:class T ]",
+        ),
         ("sh:qualifiedValueShape [ sh:in ( 8 ) ] ; sh:qualifiedMinCount 1", "fewer than 1 of link/n are as asked for"),
         ("sh:qualifiedValueShape [ sh:in ( 7 ) ] ; sh:qualifiedMaxCount 0", "more than 0 of link/n are as asked for"),
         ("sh:node [ sh:maxExclusive 7 ; sh:datatype xsd:integer ]", "link/n is 7, not less than 7"),
@@ -56,6 +60,7 @@ def test_a_constraint_of_a_path_is_told_as_the_compiled_tests_tell_those_of_a_pr
     ("shape", "words"),
     [
         ("sh:class :Lamp", "it is a, not a Lamp"),
+        ("sh:not [ sh:class :T ]", "it must not conform to shape [ sh:class T ]"),
         ("sh:hasValue :b", "it is not b"),
         (
             "sh:closed true ; sh:ignoredProperties ( <http://www.w3.org/1999/02/22-rdf-syntax-ns#type> :link :text )",
