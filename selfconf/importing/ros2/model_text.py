@@ -52,6 +52,12 @@ class ModelEntry:
         return [unquoted(word) for word in _WORD.findall(self.text)]
 
 
+LINE = "a line is `name:`, `name: value`, `- name: value`, `- [a, b]` or a name"
+"""What a line of a model is, for one that is none."""
+PERHAPS_NO_MODEL = "; is this a .ros2 or .rossystem model, and no launch file or definition?"
+"""What is asked besides where the first line of a document is none of a model."""
+
+
 def unquoted(text: str) -> str:
     """A text without the quotes around it."""
     text = text.strip()
@@ -74,6 +80,7 @@ def parse_model(source: SourceDocument) -> list[ModelEntry]:
 
 def _entries(source: SourceDocument) -> Iterator[ModelEntry]:
     """Each line that says something; a list in brackets may take several."""
+    begun = False
     lines = enumerate(source.text().splitlines(), 1)
     for number, raw in lines:
         line = _without_comment(raw.expandtabs(8), source, number)
@@ -93,12 +100,12 @@ def _entries(source: SourceDocument) -> Iterator[ModelEntry]:
                 entry.text = ""
             else:
                 entry.below.clear()
+            begun = True
             yield entry
         elif _WORD.fullmatch(text.lstrip("- ")) or re.fullmatch(r"-\s*\[.*\]", text):
             yield ModelEntry("", text.removeprefix("-").strip(), number, column + 1)
         else:
-            message = "a line is `name:`, `name: value`, `- name: value`, `- [a, b]` or a name"
-            raise _mistake(source, number, column, f"{message}, not {text[:40]!r}")
+            raise _mistake(source, number, column, f"{LINE}, not {text[:40]!r}{'' if begun else PERHAPS_NO_MODEL}")
 
 
 def _unclosed(text: str) -> str:

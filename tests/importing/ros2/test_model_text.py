@@ -92,6 +92,7 @@ def test_a_hash_in_quotes_is_no_comment_and_quotes_are_no_part_of_a_value() -> N
         ("a:\n  b: {c: 1,\n", "x.ros2:2:3: a mapping in braces has no end"),
         ('a:\n  b: "x\n', "x.ros2:2:6: a quotation has no end"),
         ("a:\n  b c d\n", "x.ros2:2:3: a line is `name:`"),
+        ("# a launch file\nfrom launch import x\n", "not 'from launch import x'; is this a .ros2 or .rossystem model"),
         ("\n".join(f"{' ' * each}a:" for each in range(100)), "nested more than 50 levels deep"),
         ("{}", "x.ros2:1:1: a line is"),
     ],
