@@ -313,11 +313,21 @@ def _value(store: Any, definition: Any, given: Any) -> Any:
     if kind == Nodetype.NAME:
         return _built(store, detail, {} if given is None else given)
     if kind == Nodetype.BASE:
-        value = _base(detail[0], given)
+        value = _base(detail[0], detail[1], given)
         return value - 256 if detail[0] == "byte" and value in range(128, 256) else value
     element, count = detail
     if given is None:
         given = [None] * (count if kind == Nodetype.ARRAY else 0)
+    values = _elements(store, element, given)
+    if kind == Nodetype.SEQUENCE and 0 < count < len(values):  # rosbags would write them all
+        raise MessageError(f"has {len(values)} elements in a field that takes {count} at most")
+    return values
+
+
+def _elements(store: Any, element: Any, given: Any) -> Any:
+    """The elements of an array or sequence: numbers as an array of NumPy, all else as a list."""
+    from rosbags.interfaces import Nodetype
+
     if element[0] == Nodetype.BASE and element[1][0] not in ("string", "wstring"):
         return _numbers(element[1][0], given)
     if isinstance(given, str | bytes | Mapping):  # of a text Python would make its letters
@@ -343,8 +353,11 @@ def _numbers(datatype: str, given: Any) -> Any:
     raise MessageError(f"has a value that is no {datatype}[]")
 
 
-def _base(datatype: str, given: Any) -> Any:
+def _base(datatype: str, most: int, given: Any) -> Any:
+    """The value of a field that is no message; a text has `most` octets at most, where that is not zero."""
     if given is not None:
+        if most and isinstance(given, str) and len(given.encode()) > most:  # rosbags would write it in full
+            raise MessageError(f"has a text of {len(given.encode())} octets in a field that takes {most} at most")
         if datatype == "bool" and given not in (True, False):  # of a text Python would make true, whatever it says
             raise MessageError(f"has {reprlib.repr(given)[:40]}, where a bool is true or false")
         return given

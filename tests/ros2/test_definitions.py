@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -170,3 +172,25 @@ def test_types_are_complete_with_all_that_they_are_made_of() -> None:
         },
     )
     assert complete_types(types, ["a/msg/C"]) == (types, {})
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({"label": "é1234567890"}, "has a text of 12 octets in a field that takes 10 at most"),
+        ({"counts": [1, 2, 3, 4]}, "has 4 elements in a field that takes 3 at most"),
+        ({"tags": ["a"] * 3}, "has 3 elements in a field that takes 2 at most"),
+        ({"tags": ["abcdef"]}, "has a text of 6 octets in a field that takes 5 at most"),
+        ({"counts": 5}, "has a value that is no int32[]"),
+    ],
+)
+@pytest.mark.usefixtures("forgotten")
+def test_no_message_is_written_with_more_than_its_definition_bounds(tmp_path: Path, fields: Any, words: str) -> None:
+    text = "string<=10 label\nint32[<=3] counts\nstring<=5[<=2] tags\nint32[] free\n"
+    assert messages.learn([defined(tmp_path, Bounded__msg=text)]) == []
+    kind = usual("lab_msgs/msg/Bounded")
+    full = {"label": "é23456789", "counts": [1, 2, 3], "tags": ["abcde", ""], "free": [1] * 9}
+    read = messages.message_fields(messages.message(full, kind), kind)
+    assert {name: list(value) if name in ("counts", "free") else value for name, value in read.items()} == full
+    with pytest.raises(messages.MessageError, match=re.escape(words)):
+        messages.message(full | fields, kind)
