@@ -107,7 +107,8 @@ class Contingencies:
                 if component not in known:
                     outcome = self._request.compose(supposed.found, supposed.lost | {component}, supposed.running)
                     if isinstance(outcome, Configuration):
-                        known[component] = Contingency(outcome, plan_of(outcome), dict(self._request.not_judged()))
+                        not_judged = dict(self._request.composer.not_judged())
+                        known[component] = Contingency(outcome, plan_of(outcome), not_judged)
                     else:
                         known[component] = None
         except SelfconfError:

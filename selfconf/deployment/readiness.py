@@ -38,7 +38,7 @@ class Readiness:
             return
 
         def work() -> None:
-            standby = self._request.standby(configuration, frozenset(state.lost))
+            standby = self._request.composer.standby(configuration, frozenset(state.lost))
 
             def send() -> None:
                 now = self._state()

@@ -97,7 +97,7 @@ class DeploymentRecord:
             (identity.name, identity.priority),
             self._revises,
             tuple(self._failures.values()),
-            self._request.passed_over(configuration),
+            self._request.composer.passed_over(configuration),
             None if self._request.outside is None else self._request.outside.composite,
         )
         return to_turtle(deployment_triples(configuration, name, self._request.task, deployment))

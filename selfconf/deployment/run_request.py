@@ -48,10 +48,7 @@ Standby = Mapping[IRI, Wires]
 
 
 class TaskComposer(Protocol):
-    """What composes one task again and again: a `selfconf.composition.Composer`, which is no part of this room.
-
-    Each of its methods is a field of `RunRequest`, where it is described.
-    """
+    """What composes one task again and again: a `selfconf.composition.Composer`, which is no part of this room."""
 
     @property
     def task(self) -> TaskDocument:
@@ -63,16 +60,16 @@ class TaskComposer(Protocol):
         """Act 3."""
 
     def not_judged(self) -> Mapping[IRI, NotJudged]:
-        """What cannot be judged."""
+        """The components that act 3 has left out last because they cannot be judged; called where that was."""
 
     def usable(self, components: Set[IRI], refusal: Refusal) -> Mapping[IRI, tuple[IRI, ...]]:
-        """What could help where there is no configuration."""
+        """Of some components, those that could help where act 3 has refused, each with the roles that it may play."""
 
     def standby(self, configuration: Configuration, lost: frozenset[IRI]) -> Standby:
-        """What might be connected next."""
+        """For each component and input of a configuration, the outputs that might be connected next, but the lost."""
 
     def passed_over(self, configuration: Configuration) -> Mapping[IRI, Sequence[IRI]]:
-        """What came before the chosen ones."""
+        """For each role of a configuration, the candidates that came before the chosen ones."""
 
 
 @immutable
@@ -91,12 +88,9 @@ class RunRequest:
     """A task to run: how to compose, what to do after a loss, and where to report."""
 
     _: KW_ONLY
-    task: Task
+    composer: TaskComposer
     compose: ComposeFunction
-    not_judged: Callable[[], Mapping[IRI, NotJudged]] = dict
-    """The components that the last `compose` left out because they cannot be judged; called where that was."""
-    usable: Callable[[Set[IRI], Refusal], Mapping[IRI, tuple[IRI, ...]]] = lambda components, refusal: {}
-    """Of some components, those that could help where `compose` has refused, each with the roles that it may play."""
+    """Act 3, by the composer, or what is done in its place."""
     policy: Policy = Policy.REPAIR
     name: str = ""
     """The name of the task in the ecology; by default that of its template."""
@@ -112,10 +106,6 @@ class RunRequest:
     """After how many seconds a component that the strategy would rather have is changed to; None: never."""
     patient: bool = False
     """Whether a refusal does not end the run: it waits until the ecology has what the task needs."""
-    standby: Callable[[Configuration, frozenset[IRI]], Standby] = lambda configuration, lost: {}
-    """For each component and input of a configuration, the outputs that might be connected next, but for the lost."""
-    passed_over: Callable[[Configuration], Mapping[IRI, Sequence[IRI]]] = lambda configuration: {}
-    """For each role of a configuration, the candidates that came before the chosen ones."""
     aside: Aside = at_once
     """Runs what takes long, such as a search, apart from the bus; by default at once, where that is the only thread."""
     at_leisure: Callable[[Callable[[], None]], None] = lambda work: None
@@ -138,14 +128,12 @@ class RunRequest:
     @classmethod
     def of(cls, composer: TaskComposer, compose: ComposeFunction | None = None) -> RunRequest:
         """The request to run the task of a composer; `compose`, if there is any, does act 3 in its place."""
-        return cls(
-            task=composer.task.task,
-            compose=compose or composer.compose,
-            not_judged=composer.not_judged,
-            usable=composer.usable,
-            standby=composer.standby,
-            passed_over=composer.passed_over,
-        )
+        return cls(composer=composer, compose=compose or composer.compose)
+
+    @property
+    def task(self) -> Task:
+        """The task."""
+        return self.composer.task.task
 
 
 @immutable

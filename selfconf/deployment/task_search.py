@@ -86,9 +86,9 @@ class TaskSearch:
             try:
                 outcome = self._request.compose(found, effect.left_out, effect.running)
                 plan = plan_of(outcome) if isinstance(outcome, Configuration) else None
-                not_judged = dict(self._request.not_judged())
+                not_judged = dict(self._request.composer.not_judged())
                 refusal = outcome if isinstance(outcome, Refusal) else refused
-                usable = self._request.usable(taken, refusal) if isinstance(refusal, Refusal) else {}
+                usable = self._request.composer.usable(taken, refusal) if isinstance(refusal, Refusal) else {}
             except SelfconfError as error:
                 trouble = error
                 self._bus.wake_up(lambda: self._give_up(trouble))

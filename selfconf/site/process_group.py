@@ -61,13 +61,11 @@ class ProcessGroup:
 
     def pipes(self) -> tuple[tuple[str, int], ...]:
         """The streams that it prints on, by name. They are the caller's to close from now on. Raises OSError."""
-        streams = (("stdout", self._process.stdout), ("stderr", self._process.stderr))
-        left = [(name, pipe) for name, pipe in streams if pipe is not None and not pipe.closed]
-        try:
-            return tuple((name, os.dup(pipe.fileno())) for name, pipe in left)
-        finally:
-            for _, pipe in left:
-                pipe.close()
+        printed, complained = self._process.stdout, self._process.stderr
+        assert printed is not None
+        assert complained is not None
+        with printed, complained:
+            return ("stdout", os.dup(printed.fileno())), ("stderr", os.dup(complained.fileno()))
 
     def code(self) -> int | None:
         """The exit code of the program itself; None while it runs."""

@@ -54,7 +54,7 @@ class Prospect:
             self.searches += 1
             return composer.compose(known, lost, running)
 
-        request = RunRequest(task=task.task, compose=compose)
+        request = RunRequest.of(composer, compose)
         state = State(priority=0, lost={} if loss is None else {LENS: loss, iri("sink"): loss})
         self.prospect = InsideProspect(self.lab.network.node(), "lab", request, state)
         self.known = {one.component: one for one in files.advertisements(folder / "home" / "lens.ttl")[0]}

@@ -272,7 +272,7 @@ def test_an_ecology_that_changes_all_the_time_takes_a_share_of_the_time(
     spent = [0.0]
     now = node.now
     monkeypatch.setattr(node, "now", lambda: now() + spent[0])
-    request = RunRequest(task=agent.request.task, compose=compose, at_leisure=slow)
+    request = replace(RunRequest.of(agent.request.composer, compose), at_leisure=slow)
     contingencies = Contingencies(node, request, lambda: found)
     for lost in [*ADVERTISEMENTS] * 4:
         contingencies.prepare(frozenset({iri(lost)}), running)
@@ -297,7 +297,7 @@ def test_nothing_is_searched_for_beforehand_that_would_take_long_or_that_nobody_
     running = agent.state.target
     assert running is not None
     asked = Asked(agent.request.compose)
-    request = RunRequest(task=agent.request.task, compose=asked, at_leisure=at_once)
+    request = replace(RunRequest.of(agent.request.composer, asked), at_leisure=at_once)
     contingencies = Contingencies(lab.network.node(), request, dict, lambda: why != "the task runs no more")
     contingencies.searched = MOST_SECONDS + 0.1 if why == "the last search took long" else 0.0
     contingencies.prepare(frozenset(), running)
