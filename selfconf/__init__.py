@@ -14,8 +14,9 @@
 checks files, `join` joins the living ecology, and `sites` lists those of this machine. An `Ecology` is what is read, a
 `TaskSpecification` a template with its bindings; the answer is a `Configuration`, a `Refusal` or `Undecided`, of terms
 that are an `IRI` or a `Literal`. A `LivingEcology` is what was joined, a `Run` a task that runs in it. What goes wrong
-is a `SelfconfError`. `selfconf.values` has the types of what they answer with, as `PartitionTable` and the events of a
-run. A component is written with `selfconf.sdk` and tried without a network by `selfconf.testing`.
+is a `SelfconfError`, of a kind in `selfconf.errors`. `selfconf.values` has the types of what they answer with, as
+`PartitionTable` and the events of a run. A component is written with `selfconf.sdk` and tried without a network by
+`selfconf.testing`.
 """
 
 from selfconf.late_names import TYPE_CHECKING, late_names

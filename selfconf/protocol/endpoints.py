@@ -8,6 +8,8 @@ from __future__ import annotations
 import re
 
 _PARTS = re.compile(r"(?P<protocol>[^/?#]*/?)(?P<address>[^?#]*)(?P<settings>.*)", re.DOTALL)
+_PROTOCOL = re.compile(r"[\w.-]+/", re.ASCII)
+"""A protocol with its slash; `http:/`, which a URL begins with, is none."""
 _PORT = re.compile(r"\+?[0-9]+", re.ASCII)
 MOST_PORT = (1 << 16) - 1
 LISTENING_PORTS = range(20000, 32768)
@@ -28,7 +30,7 @@ def is_zenoh_endpoint(text: str) -> bool:
     if protocol in _WITH_PORT:
         port = endpoint_port(text)
         return port is not None and port <= MOST_PORT
-    return protocol not in ("", "/") and protocol.endswith("/") and bool(address) and settings not in ("?", "#")
+    return _PROTOCOL.fullmatch(protocol) is not None and bool(address) and settings not in ("?", "#")
 
 
 def endpoint_port(endpoint: str) -> int | None:

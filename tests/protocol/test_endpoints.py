@@ -50,6 +50,9 @@ def test_further_settings_of_the_link_follow_those_that_are_there() -> None:
         ("tcp/home:65536", False),
         ("127.0.0.1:7447", False),
         ("serial/", False),
+        ("http://127.0.0.1:8000", False),
+        ("https://site.example/", False),
+        ("tcp://127.0.0.1:7447", False),
     ],
 )
 def test_what_can_be_no_endpoint_is_told_apart_before_zenoh_tries_to_reach_it(text: str, right: bool) -> None:
