@@ -22,9 +22,10 @@ LET_GO_OF = 10.0
 class Improvement:
     """The timers by which one task looks for something better; a task that is to keep what runs never does."""
 
-    def __init__(self, context: TaskContext, settling: float | None) -> None:
-        """`settling`: after how many seconds what has appeared may be rather had; None: what runs is kept."""
-        self._bus, self._step, self._settling = context.ecology.bus, context.step, settling
+    def __init__(self, context: TaskContext) -> None:
+        self._bus, self._step = context.ecology.bus, context.step
+        self._settling = context.request.upgrade
+        """After how many seconds what has appeared may be rather had; None: what runs is kept."""
         self._look_soon = Timer(context.ecology.bus, 0.0, self._look)
         self._look_at_others = Timer(context.ecology.bus, LET_GO_OF, self._look)
         self._at_the_latest: float | None = None

@@ -10,7 +10,6 @@ from __future__ import annotations
 from selfconf.bus.timer import Timer
 from selfconf.configurator import Failed, Phase, State, step
 from selfconf.deployment.components import TaskComponents
-from selfconf.deployment.run_request import RunRequest
 from selfconf.deployment.task_context import TaskContext
 from selfconf.model.run_event import ComponentLost
 from selfconf.protocol.codec import decode, encode
@@ -25,8 +24,8 @@ TIMES = 4
 class Readiness:
     """Keeps one task ready for a failure."""
 
-    def __init__(self, context: TaskContext, request: RunRequest, components: TaskComponents) -> None:
-        self._bus, self._state, self._request = context.ecology.bus, context.state, request
+    def __init__(self, context: TaskContext, components: TaskComponents) -> None:
+        self._bus, self._state, self._request = context.ecology.bus, context.state, context.request
         self._components = components
         self.prepare_soon = Timer(context.ecology.bus, APPEARED_TOGETHER, self.prepare)
         """Makes it ready with all that has appeared for a while, as a process may hold many components."""

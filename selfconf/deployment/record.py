@@ -6,7 +6,6 @@ from collections.abc import Callable
 
 from selfconf.bus.answers import answering
 from selfconf.bus.port import Request, Urgency
-from selfconf.deployment.run_request import RunRequest
 from selfconf.deployment.task_context import TaskContext
 from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import replace
@@ -27,12 +26,11 @@ class DeploymentRecord:
     def __init__(
         self,
         context: TaskContext,
-        request: RunRequest,
         status: Callable[[], Status],
         stop: Callable[[], None],
     ) -> None:
         self.bus, self._keys, self._name = context.ecology.bus, context.ecology.keys, context.name
-        self._identity, self._request = context.identity, request
+        self._identity, self._request = context.identity, context.request
         self._status, self._stop = status, stop
         self._deployed: tuple[IRI, Configuration, int, float] | None = None
         self._revises: tuple[IRI, Configuration] | None = None

@@ -118,6 +118,7 @@ class TaskRunner:
         self._notices = RunNotices(bus, self.keys, self.name, task)
         self.reports = RunReports(bus, request, self._notices, clock)
         context = TaskContext(
+            request,
             self.ecology,
             self.name,
             self.supervisor,
@@ -126,15 +127,15 @@ class TaskRunner:
             self._step,
             self.reports.note,
         )
-        self._components = TaskComponents(context, request.outside)
-        self._readiness = Readiness(context, request, self._components)
-        self._discovery = TaskDiscovery(context, self._components.liveness, request.without_configurator)
-        self._search = TaskSearch(context, request, self._components.liveness, self._give_up)
+        self._components = TaskComponents(context)
+        self._readiness = Readiness(context, self._components)
+        self._discovery = TaskDiscovery(context, self._components.liveness)
+        self._search = TaskSearch(context, self._components.liveness, self._give_up)
         self._lasting_losses = LastingLosses(context)
         self._retries_while_refused = RetriesWhileRefused(context, self._components.lives)
         self._retries_while_running = RetriesWhileRunning(context, self._components.lives)
-        self._improvement = Improvement(context, request.upgrade)
-        self._record = DeploymentRecord(context, request, self.status, self.stop)
+        self._improvement = Improvement(context)
+        self._record = DeploymentRecord(context, self.status, self.stop)
         self._events: deque[Event] = deque()
         self._stepping = False
         self._leave = bus.announce(self.supervisor)

@@ -1,11 +1,11 @@
-"""What every part of the configurator of a running task is given: the ecology, who it is, the machine, the listener."""
+"""What every part of the configurator of a running task is given: the request, the ecology, its name, the machine."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 from selfconf.configurator import Event, State
-from selfconf.deployment.run_request import EventListener, TaskIdentity
+from selfconf.deployment.run_request import EventListener, RunRequest, TaskIdentity
 from selfconf.discovery import EcologyView
 from selfconf.model.immutable import immutable
 
@@ -14,6 +14,7 @@ from selfconf.model.immutable import immutable
 class TaskContext:
     """One running task, as the parts of its configurator see it."""
 
+    request: RunRequest
     ecology: EcologyView
     name: str
     """The name of the configurator in the ecology."""

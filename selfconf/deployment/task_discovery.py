@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from selfconf.configurator import Appeared, Discovered, Failed, Loss
 from selfconf.deployment.components import Liveness
-from selfconf.deployment.holders import WithoutConfigurator, ask_holders
+from selfconf.deployment.holders import ask_holders
 from selfconf.deployment.task_context import TaskContext
 from selfconf.discovery import Discovery
 from selfconf.model.holder import Holder
@@ -20,16 +20,10 @@ from selfconf.protocol.messages import Cause
 class TaskDiscovery:
     """Asks the ecology for one task, and feeds its machine with what was found."""
 
-    def __init__(
-        self,
-        context: TaskContext,
-        liveness: Liveness,
-        without_configurator: WithoutConfigurator,
-    ) -> None:
-        """`without_configurator` is that of the `RunRequest`."""
+    def __init__(self, context: TaskContext, liveness: Liveness) -> None:
         self._bus, self._ecology, self._name = context.ecology.bus, context.ecology, context.name
         self._liveness = liveness
-        self._without_configurator = without_configurator
+        self._without_configurator = context.request.without_configurator
         self._state, self._step, self._report = context.state, context.step, context.report
         self._asked = 0
         """How often the ecology was asked."""

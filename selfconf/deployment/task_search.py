@@ -11,7 +11,6 @@ from selfconf.bus.port import Undo
 from selfconf.configurator import Compose, Composed, Phase, Policy, plan_of
 from selfconf.deployment.components import Liveness
 from selfconf.deployment.contingencies import Contingencies
-from selfconf.deployment.run_request import RunRequest
 from selfconf.deployment.task_context import TaskContext
 from selfconf.errors import ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration
@@ -41,19 +40,14 @@ class TaskSearch:
     def __init__(
         self,
         context: TaskContext,
-        request: RunRequest,
         liveness: Liveness,
         give_up: Callable[[SelfconfError], None],
     ) -> None:
         """`give_up` ends the task where it cannot be searched for."""
-        self._bus, self._ecology, self._request, self._liveness = (
-            context.ecology.bus,
-            context.ecology,
-            request,
-            liveness,
-        )
+        self._bus, self._ecology, self._request = context.ecology.bus, context.ecology, context.request
+        self._liveness = liveness
         self._state, self._step, self._report, self._give_up = context.state, context.step, context.report, give_up
-        self._contingencies = Contingencies(context.ecology.bus, request, self._advertised, lambda: self._runs)
+        self._contingencies = Contingencies(self._bus, self._request, self._advertised, lambda: self._runs)
         self._better: _Better | None = None
         """What was answered last when the task ran and looked for something better."""
         self._left_out: set[IRI] = set()

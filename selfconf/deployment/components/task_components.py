@@ -28,7 +28,6 @@ from selfconf.deployment.components.port_ends import PortEnds
 from selfconf.deployment.components.reachability import Reachability
 from selfconf.deployment.components.waking import Waking
 from selfconf.deployment.notices import AT_LEISURE
-from selfconf.deployment.run_request import Outside
 from selfconf.deployment.task_context import TaskContext
 from selfconf.model.run_event import FailWatched
 from selfconf.model.term import IRI
@@ -41,10 +40,10 @@ ComponentEffect = Watch | Unwatch | WakeUp | ReserveOf | QueueFor | Decline | Aw
 class TaskComponents:
     """Asks the components of one task what its machine wants, and feeds that with what they say and how they live."""
 
-    def __init__(self, context: TaskContext, outside: Outside | None) -> None:
+    def __init__(self, context: TaskContext) -> None:
         self._bus, self._state, self._report = context.ecology.bus, context.state, context.report
         self.lives = HeldLives(context.ecology)
-        self.ends = PortEnds(context.ecology, outside)
+        self.ends = PortEnds(context.ecology, context.request.outside)
         self._waking = Waking(context, self.lives)
         self.calls = Calls(context, self.lives, self._waking, self.ends)
         sites = LivingSites(context, self._waking)
