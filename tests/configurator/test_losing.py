@@ -284,6 +284,16 @@ def test_what_has_gone_with_its_site_may_be_cut_off_and_is_waited_for_a_moment()
     assert TRACKER not in history.state.lost
 
 
+def test_what_was_silent_before_its_life_seemed_to_end_was_cut_off_also_if_its_site_could_start_it() -> None:
+    history = lost(Cause.SILENCE)
+    history.composed(navigation(ODOMETRY))
+    history.all_answer()
+    history.hear(Failed(TRACKER, "1", Cause.CRASH, "its life has ended", startable=True))
+    assert history.state.lost[TRACKER].startable
+    history.hear(Appeared({TRACKER: "1"}))
+    assert TRACKER not in history.state.lost
+
+
 def test_what_was_not_there_before_is_not_waited_for_where_its_site_cannot_be_reached() -> None:
     history = History().accepted()
     history.composed(navigation())

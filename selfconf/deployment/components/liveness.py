@@ -147,12 +147,18 @@ class Liveness:
             component, now = self._component(chunk), self.ecology.lives.get(chunk, ())
             if component is None:
                 continue
-            if life not in now:
-                self._step(Failed(component, life, Cause.CRASH, "its life has ended"))
+            if life not in now or self._was_silent(component, life):
+                why = "its life has ended" if life not in now else "it was cut off for a moment"
+                self._step(Failed(component, life, Cause.CRASH, why))
                 if now:
                     self._step(Appeared({component: now[0]}))
             elif self._held_life(component) == life:
                 self._calls.look(component, partial(self._seen, component, life, self._state().epoch))
+
+    def _was_silent(self, component: IRI, life: str) -> bool:
+        """Whether a component was lost as silent in a life that seemed to end: what it issued was cut off with it."""
+        loss = self._state().lost.get(component)
+        return loss is not None and loss.cause is Cause.SILENCE and loss.life == life
 
     def _seen(self, component: IRI, life: str, epoch: int, answer: CallAnswer | None) -> None:
         """Judge a component whose life seemed to end and goes on, by the answer to a question for its state.

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from selfconf.bus.memory import MemoryBus
-from selfconf.configurator.events import Appeared, Event
+from selfconf.configurator.events import Appeared, Event, Failed
 from selfconf.configurator.state import Phase
 from selfconf.deployment.components import liveness
 from selfconf.discovery import ecology_view
@@ -154,6 +154,28 @@ def test_a_component_that_fails_while_it_is_cut_off_for_a_moment_is_replaced(lab
     lab.let_pass(1.0)
     assert agent.state.phase is Phase.RUNNING
     assert lab.active() == TASK | {"odometry"}
+
+
+@pytest.mark.parametrize("seconds", [0.1, 5.0])
+def test_a_component_that_was_silent_as_it_was_cut_off_with_its_site_may_be_chosen_again(
+    lab: Lab, seconds: float
+) -> None:
+    agent = lab.agent()
+    lab.running(agent)
+    configurator, behind_the_router = lab.network.nodes[-1], (lab.node_of("tracker"), lab.network.nodes[0])
+    agent._step(Failed(iri("person-tracker"), "", Cause.SILENCE, "no signal"))
+    for node in behind_the_router:
+        lab.network.cut(configurator, node)
+    lab.let_pass(seconds)
+    assert agent.state.phase is Phase.RUNNING
+    for node in behind_the_router:
+        lab.network.reconnect(configurator, node)
+    lab.let_pass(5.0)
+    assert iri("person-tracker") not in agent.state.lost
+    lab.components["odometry"].fail("wheels slip")
+    lab.let_pass(1.0)
+    assert agent.state.phase is Phase.RUNNING
+    assert lab.active() == TASK | {"tracker"}
 
 
 @pytest.mark.parametrize("name", ["drive", "tracker"])
