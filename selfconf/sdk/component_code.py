@@ -15,9 +15,9 @@ from typing import Any
 
 from selfconf.model.literal_values import as_python
 from selfconf.model.term import Term
-from selfconf.sdk.blindness import TOLERATES, Blindness
 from selfconf.sdk.component import Component, Refused, Signal
 from selfconf.sdk.component_context import ComponentContext
+from selfconf.sdk.unfed_inputs import TOLERATES, UnfedInputs
 
 log = logging.getLogger(__name__)
 
@@ -63,7 +63,7 @@ class ComponentCode:
         self._on = self._resting = self._lacking = False
         tolerates = TOLERATES if profile.tolerates is None else profile.tolerates
         required = frozenset(port.name for port in profile.required if not port.is_operation)
-        self._blindness = Blindness(
+        self._unfed_inputs = UnfedInputs(
             self._bus, required | {INCOMPLETE}, tolerates if self._actuates else None, self._rest
         )
         self._values: dict[str, Term] = {}
@@ -135,7 +135,7 @@ class ComponentCode:
         """Be inactive at once, and at rest as soon as what runs now has returned."""
         self.turn += 1
         self.stopping = True
-        self._blindness.forget()
+        self._unfed_inputs.forget()
 
         def at_rest() -> None:
             self.stopping = False
@@ -156,7 +156,7 @@ class ComponentCode:
 
         It may have lost it while its code is about to start.
         """
-        if self.wanted and self._blindness.begin(port):
+        if self.wanted and self._unfed_inputs.begin(port):
             self._thread.call(lambda: self._guarded("unfed", lambda: self._component.unfed(port)))
 
     def lack_a_part(self, lacking: bool) -> None:
@@ -165,15 +165,15 @@ class ComponentCode:
         def complete() -> None:
             if self._lacking:  # once more, while the code was busy
                 return
-            if self._blindness.end(INCOMPLETE) and self._resting and not self._blindness.blind:
+            if self._unfed_inputs.end(INCOMPLETE) and self._resting and not self._unfed_inputs.blind:
                 self._wake(INCOMPLETE)
 
         self._lacking = lacking
         if not lacking:
-            if INCOMPLETE in self._blindness.unfed:
+            if INCOMPLETE in self._unfed_inputs.unfed:
                 self._thread.call(complete)
-        elif self.wanted and self._blindness.begin(INCOMPLETE):
-            self._blindness.has_lasted(TOLERATES)
+        elif self.wanted and self._unfed_inputs.begin(INCOMPLETE):
+            self._unfed_inputs.has_lasted(TOLERATES)
 
     def connection_changed(self, operation: str, connected: bool) -> None:
         """Tell the component that an operation that it needs is connected, or is no more, unless it rests or knows."""
@@ -195,8 +195,8 @@ class ComponentCode:
         """Hand a signal to the component; called on the thread of its code."""
         if not self.active:
             return
-        if self._blindness.end(port):
-            if self._resting and not self._blindness.blind:
+        if self._unfed_inputs.end(port):
+            if self._resting and not self._unfed_inputs.blind:
                 self._wake(port)
             self._guarded("fed", lambda: self._component.fed(port))
         if not self._resting:
@@ -259,9 +259,9 @@ class ComponentCode:
 
         def rest() -> None:
             self.is_to_rest = False
-            if turn == self.turn and self.active and self._blindness.blind and not self._resting:
+            if turn == self.turn and self.active and self._unfed_inputs.blind and not self._resting:
                 lacking = (
-                    "the configuration is incomplete" if INCOMPLETE in self._blindness.unfed else "an input is unfed"
+                    "the configuration is incomplete" if INCOMPLETE in self._unfed_inputs.unfed else "an input is unfed"
                 )
                 log.warning("%s: %s; at rest for as long", self._name, lacking)
                 self._rests += 1

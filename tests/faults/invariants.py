@@ -16,8 +16,8 @@ from selfconf.deployment import TaskRunner
 from selfconf.deployment.components.releases import RELEASE_AGAIN
 from selfconf.model.configuration import Configuration
 from selfconf.model.term import IRI
-from selfconf.sdk.blindness import TOLERATES
 from selfconf.sdk.runtime.supervision import GRACE
+from selfconf.sdk.unfed_inputs import TOLERATES
 from tests.faults.histories import History, Life, looked_up_once
 
 CALLS = 2.0

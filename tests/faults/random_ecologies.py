@@ -1,7 +1,7 @@
 """Ecologies of random shape: what histories show in the few that are written by hand may hold in these alone.
 
 Sources feed what converts their signals, in a circle at times, and that feeds actuators. Roles are of one component or
-of several, inputs may be optional, components may be shared, tolerate blindness, have a parameter, offer an operation
+of several, inputs may be optional, components may be shared, tolerate to be blind, have a parameter, offer an operation
 or need one, and a composite may stand for a source. The number of an ecology decides all of it; `tests.faults.replay`
 plays a history in it by `--ecology random-NUMBER`.
 """

@@ -227,7 +227,7 @@ class UpgradeWatch:
     def _is_fed(self, life: Life) -> bool:
         """Whether what feeds a component acts and is in reach, and has issued something: else it is blind."""
         ports = {port for port, _ in life.followed}
-        return not life.runtime.code._blindness.blind and all(
+        return not life.runtime.code._unfed_inputs.blind and all(
             any(feeds(self._history, wire.component, life) for name, wire in life.followed if name == port)
             for port in ports
         )

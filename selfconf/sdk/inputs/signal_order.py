@@ -39,7 +39,7 @@ class SignalOrder:
         """The newest signal that was delivered."""
         self.over = NONE
         """The last signal of a source that has failed since, or has let go of its task: what comes late of those up to
-        that is no sign that it issues, and ends no blindness."""
+        that is no sign that it issues, and the input stays unfed."""
         self.said_again = NONE
         """What the output has answered since it was lost, if anything: that counts also if it was delivered before."""
         self.doubted: SignalNumber | None = None

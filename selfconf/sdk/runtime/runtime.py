@@ -4,7 +4,7 @@ It holds the liveliness token, obeys control calls by the table in `selfconf.pro
 component's code run what they ask for, on the thread of that code. Everything else, supervision and the watch over the
 code included, happens on the thread of the bus, so that it never waits for the code. `ControlCalls` reads the calls,
 `CallAnswers` makes their answers, and `WaitingTasks` deals with the tasks that a call has to wait for; `ComponentCode`
-calls the code; outputs, inputs, operations, supervision and blindness have modules of their own.
+calls the code; outputs, inputs, unfed inputs, operations and supervision have modules of their own.
 """
 
 from __future__ import annotations

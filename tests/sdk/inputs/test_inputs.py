@@ -7,7 +7,7 @@ from dataclasses import replace
 from selfconf.model.profile import Input
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Wire
-from selfconf.sdk.blindness import TOLERATES
+from selfconf.sdk.unfed_inputs import TOLERATES
 from tests.sdk.stage import (
     CAP_PROFILE,
     DRIVE_PROFILE,

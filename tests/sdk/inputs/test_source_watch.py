@@ -8,10 +8,10 @@ from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Request, Urgency
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Cause, Fail, Stamp, Wire
-from selfconf.sdk.blindness import TOLERATES
 from selfconf.sdk.inputs import Inputs
 from selfconf.sdk.inputs.input_subscription import InputSubscription
 from selfconf.sdk.inputs.source_watch import UNSEEN
+from selfconf.sdk.unfed_inputs import TOLERATES
 from tests.sdk.stage import (
     CAP,
     DRIVE_PROFILE,

@@ -17,7 +17,7 @@ TOLERATES = 1.0
 """Seconds for which an actuator acts on with an unfed input, unless its advertisement says otherwise."""
 
 
-class Blindness:
+class UnfedInputs:
     """The unfed inputs of one component, and whether it rests because of those that it requires."""
 
     def __init__(self, bus: Bus, required: frozenset[str], tolerates: float | None, rest: Callable[[], None]) -> None:

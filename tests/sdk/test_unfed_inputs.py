@@ -9,9 +9,9 @@ import pytest
 from selfconf.model.profile import Input, Output, Ports, offered_operation
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.protocol.messages import Cause, Wire
-from selfconf.sdk.blindness import TOLERATES
 from selfconf.sdk.component import Refused
 from selfconf.sdk.runtime import ComponentRuntime
+from selfconf.sdk.unfed_inputs import TOLERATES
 from tests.lab import Recorder
 from tests.sdk.stage import DRIVE, DRIVE_PROFILE, KEYS, THEM, TRACKER, US, Stage, apply, follow, release, reserve
 
