@@ -11,6 +11,7 @@ from selfconf.api.arguments import checked_rows, checked_seconds
 from selfconf.api.places import with_lines
 from selfconf.api.tables import Tabular
 from selfconf.errors import ProgrammerError
+from selfconf.http_origin import check_without_user
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.holder import Holder
 from selfconf.model.immutable import FrozenMapping, immutable, replace
@@ -239,6 +240,10 @@ class EndpointEcology(Ecology):
 
     url: str
     remote: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        """Raises AuthorError for a URL with a user name or a password in it."""
+        check_without_user(self.url)
 
     def advertisements(self) -> Mapping[IRI, Advertisement]:
         """Raises ProgrammerError: an endpoint may hold a million of them; ask it by `query`."""

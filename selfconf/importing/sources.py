@@ -21,6 +21,7 @@ from urllib.request import Request
 from selfconf import files
 from selfconf.errors import AuthorError
 from selfconf.http_opener import http_opener
+from selfconf.http_origin import check_without_user
 from selfconf.importing.pages import Pages
 from selfconf.importing.turtle_text import MARK
 from selfconf.model.immutable import immutable
@@ -109,7 +110,8 @@ def _too_large(shown: str) -> AuthorError:
 
 
 def _fetched(url: str) -> Iterator[SourceDocument]:
-    """What a URL answers, page by page. Raises AuthorError."""
+    """What a URL answers, page by page. Raises AuthorError, also for a URL with a user name or a password in it."""
+    check_without_user(url)
     pages, first = Pages(url), None
     while pages.url is not None:
         octets, links = _answer(pages.url)

@@ -106,6 +106,12 @@ def test_broken_turtle_is_refused_with_its_line() -> None:
         sc.read("@prefix : <x:> .\n:a b\n")
 
 
+def test_an_endpoint_with_a_password_is_refused_before_it_is_shown() -> None:
+    with pytest.raises(AuthorError) as error:
+        sc.read("http://me:secret@127.0.0.1:1/query")
+    assert "secret" not in str(error.value)
+
+
 def test_an_endpoint_is_an_ecology_by_itself_and_is_not_asked_before_it_has_to_be() -> None:
     endpoint = sc.read("http://127.0.0.1:1/query")
     assert repr(endpoint) == "<ecology at http://127.0.0.1:1/query>"

@@ -109,6 +109,13 @@ def test_what_is_not_there_is_named_and_the_rest_is_gathered(tmp_path: Path) -> 
     assert "there is no file or folder" in str(errors[0])
 
 
+def test_a_url_with_a_password_is_refused_in_words_that_do_not_tell_it() -> None:
+    found, (error,) = gathered("http://me:secret@127.0.0.1:1/lamp")
+    assert found == []
+    assert "secret" not in str(error)
+    assert "has a user name or a password in it" in str(error)
+
+
 def test_an_empty_text_as_of_a_variable_that_is_not_set_is_no_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from urllib.parse import urlsplit
 
 from selfconf.errors import AuthorError
-from selfconf.http_origin import http_origin
+from selfconf.http_origin import check_without_user, http_origin
 from selfconf.importing import NO_THINGS, DescribedThing, ImportLedger, SourceDocument, described_things, gather
 from selfconf.model.immutable import replace
 
@@ -61,7 +61,8 @@ def is_url(source: str) -> bool:
 
 
 def host_of(url: str) -> str:
-    """The host to which a URL leads. Raises AuthorError for what is none."""
+    """The host to which a URL leads. Raises AuthorError for what is none, and for one with a password in it."""
+    check_without_user(url)
     try:
         http_origin(url)
     except ValueError:

@@ -22,6 +22,8 @@ def test_a_url_has_a_host_in_lower_case_and_what_is_none_is_named() -> None:
     assert host_of("http://Lamp.example:8080/td") == "lamp.example"
     with pytest.raises(AuthorError, match="is no http or https URL"):
         host_of("http://")
+    with pytest.raises(AuthorError, match=r"^the URL of lamp\.example has a user name or a password in it"):
+        host_of("http://me:secret@lamp.example/td")
 
 
 def test_a_file_comes_from_its_folders_and_a_url_from_itself_alone() -> None:
