@@ -8,13 +8,11 @@ from selfconf.model.profile import Condition, Input, Output, needed_operation, o
 from selfconf.model.template import Role, TemplatePort
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.permitted_fields import NAME_TEXT, NAMED_OR_TEXT
-from selfconf.rdf.tasks.mistakes import DocumentReader, misplaced, worded
+from selfconf.rdf.tasks.mistakes import DocumentReader, worded
 from selfconf.rdf.turtle import Document
 from selfconf.rdf.vocabulary import SC
 
-_LINKS = (SC.hasInput, SC.needsOperation, SC.hasOutput, SC.hasOperation)
-_FIXED = tuple(SC[name] for name in ("name", "signalType", "unit", "frame", "request", "response"))
-"""What a port says that is the same for all tasks of the template, so that no parameter can stand there."""
+PORT_LINKS = (SC.hasInput, SC.needsOperation, SC.hasOutput, SC.hasOperation)
 
 
 def template_ports(document: Document, template: IRI, roles: tuple[Role, ...]) -> tuple[TemplatePort, ...]:
@@ -27,13 +25,9 @@ class _PortReader(DocumentReader):
     """Reads the ports of a template; every method raises TemplateError with a sentence for the author."""
 
     def ports(self, template: IRI, roles: frozenset[IRI]) -> Iterator[TemplatePort]:
-        parameters = frozenset[Term](self.document.instances(SC.Parameter))
-        for link in _LINKS:
+        for link in PORT_LINKS:
             names: set[str] = set()
             for node in self.document.values(template, link):
-                for predicate in _FIXED:
-                    for value in parameters.intersection(self.document.values(node, predicate)):
-                        raise self.mistake(misplaced(value, predicate), node, predicate, value)
                 what = f"a sc:{link.short} of the template {worded(template)}"
                 name = self.only(node, SC.name, f"{what} has exactly one sc:name, a string")
                 if not isinstance(name, Literal) or not NAME_TEXT.allows(name):

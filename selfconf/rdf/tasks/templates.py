@@ -23,7 +23,7 @@ from selfconf.rdf.permitted_fields import SAID_BY
 from selfconf.rdf.tasks.interactions import interactions_of
 from selfconf.rdf.tasks.mistakes import DocumentReader, misplaced, worded
 from selfconf.rdf.tasks.parameters import misfits, parameters_of
-from selfconf.rdf.tasks.ports import template_ports
+from selfconf.rdf.tasks.ports import PORT_LINKS, template_ports
 from selfconf.rdf.tasks.roles import roles_of
 from selfconf.rdf.turtle import Document, ListFault, Node
 from selfconf.rdf.vocabulary import FIRST, LABEL, SC, TYPE, XSD
@@ -37,6 +37,8 @@ _FIXED = frozenset(
     SC[name] for name in ("minCount", "maxCount", "recruits", "output", "input", "weight", "otherwise", "priority")
 )
 """What is the same for all tasks of a template, so that no parameter can stand there."""
+_FIXED_OF_PORTS = frozenset(SC[name] for name in ("name", "signalType", "unit", "frame", "request", "response"))
+"""What else is so where a port of the template says it."""
 _BROKEN = {
     ListFault.NO_LIST: "{head} is no list of roles",
     ListFault.CELL: "each cell of the list sc:roles has exactly one rdf:first and one rdf:rest",
@@ -138,7 +140,7 @@ class _Reader(DocumentReader):
             raise self.mistake("a template needs an IRI", template)
         names = self._listed(template)
         self._said_of_others()
-        self._without_parameters()
+        self._without_parameters(template)
         head = self.only(template, SC.roles, "")
         roles = roles_of(self.document, head, names)
         return Template(
@@ -196,11 +198,13 @@ class _Reader(DocumentReader):
                     what = f"has sc:{predicate.short}, but is not described as a {words}"
                     raise self.mistake(f"{worded(subject)} {what}", subject)
 
-    def _without_parameters(self) -> None:
+    def _without_parameters(self, template: IRI) -> None:
         """Raises where a parameter stands for something that is the same for all tasks."""
         parameters = frozenset[Term](self.document.instances(SC.Parameter))
+        ports = frozenset(port for link in PORT_LINKS for port in self.document.values(template, link))
         for subject, predicate, value in self.document.triples() if parameters else ():
-            if predicate in _FIXED and value in parameters:
+            fixed = predicate in _FIXED or (predicate in _FIXED_OF_PORTS and subject in ports)
+            if fixed and value in parameters:
                 raise self.mistake(misplaced(value, predicate), subject, predicate, value)
 
     def _label(self, subject: IRI) -> str | None:
