@@ -9,6 +9,7 @@ Nor does what a command comes to depend on its readers: one may have seen enough
 
 from __future__ import annotations
 
+import errno
 import io
 import json
 import os
@@ -30,15 +31,27 @@ _MARK = f"\ue000{secrets.token_hex(8)}"
 _MARKED = re.compile(f"{_MARK}([0-9;]+)m")
 
 
+@contextmanager
+def _reader_may_have_gone() -> Iterator[None]:
+    """A terminal that was closed is a reader that has gone, as of a pipe; Linux calls it an error of the device."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno == errno.EIO:
+            raise BrokenPipeError(errno.EPIPE, "the terminal was closed") from None
+        raise
+
+
 class Terminal(io.TextIOBase):
-    """A stream that leads to a terminal."""
+    """A stream that leads to a terminal. Each method that writes raises BrokenPipeError once that was closed."""
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
 
     def write(self, text: str) -> int:
         """Write text that steers nothing."""
-        self._stream.write(self.shown(text))
+        with _reader_may_have_gone():
+            self._stream.write(self.shown(text))
         return len(text)
 
     def shown(self, text: str) -> str:
@@ -47,7 +60,8 @@ class Terminal(io.TextIOBase):
 
     def renew(self, text: str) -> None:
         """Show a text in place of all that is on the screen."""
-        self._stream.write("\x1b[H\x1b[2J")
+        with _reader_may_have_gone():
+            self._stream.write("\x1b[H\x1b[2J")
         self.write(text)
         self.flush()
 
@@ -68,7 +82,8 @@ class Terminal(io.TextIOBase):
     def flush(self) -> None:
         """Let the terminal have it; as Python ends, that may be gone first."""
         if not self._stream.closed:
-            self._stream.flush()
+            with _reader_may_have_gone():
+                self._stream.flush()
 
     def fileno(self) -> int:
         """The number of the stream."""

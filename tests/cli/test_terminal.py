@@ -50,6 +50,18 @@ def test_a_terminal_that_is_gone_is_let_go_of() -> None:
     assert terminal.closed
 
 
+def test_a_terminal_that_was_closed_is_a_reader_that_has_gone() -> None:
+    """As where its window is closed: what ends for that has not failed."""
+    ours, theirs = os.openpty()
+    stream = os.fdopen(theirs, "w")
+    terminal = Terminal(stream)
+    os.close(ours)
+    with pytest.raises(BrokenPipeError):
+        print("a line", file=terminal, flush=True)
+    display("another line", terminal)  # which lets what is still to be written come to nothing
+    stream.close()
+
+
 def test_what_nobody_reads_ends_nothing_and_what_cannot_be_encoded_is_escaped(monkeypatch: pytest.MonkeyPatch) -> None:
     ours, theirs = os.pipe()
     with os.fdopen(theirs, "w", encoding="utf-8", errors="strict") as pipe:
