@@ -28,7 +28,6 @@ from selfconf.model.profile import (
 )
 from selfconf.model.template import Interaction, Role, Task
 from selfconf.model.term import IRI
-from selfconf.rdf.eligibility import with_sent_requests
 
 
 def with_outside(task: Task, composite: IRI) -> Task:
@@ -64,7 +63,7 @@ def with_outside_candidate(
         ),
     )
     outside = Candidate(profile, (ANY_VALUE,) * len(partition.variables))
-    return with_sent_requests(replace(partition, candidates=(*partition.candidates, (outside,))), hierarchy)
+    return replace(partition, candidates=(*partition.candidates, (outside,))).with_sent_requests(hierarchy)
 
 
 def _wanted(port: Output) -> Input:

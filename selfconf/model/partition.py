@@ -17,10 +17,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import field
 from decimal import Decimal
+from operator import attrgetter
+from typing import TypeVar
 
+from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.immutable import FrozenMapping, immutable, replace
 from selfconf.model.obstacle import Obstacle
-from selfconf.model.profile import Placed, Profile, WantedSignal
+from selfconf.model.profile import Input, Placed, Ports, Profile, WantedSignal, shared_ports
 from selfconf.model.term import IRI, Term
 
 ANY_VALUE = -1
@@ -112,6 +115,8 @@ a recruit (None)."""
 Unissuable = tuple[int | None, str | None, WantedSignal]
 """What an input wants that no component to add could be known to issue: for a role by its number, or to be recruited
 (None), and by an output of that name, where an interaction asks for one."""
+_PORTS = attrgetter("profile.ports")
+_C = TypeVar("_C", Candidate, Recruit)
 
 
 @immutable
@@ -163,6 +168,27 @@ class Partition:
         only = tuple(c for c in self.candidates[role] if c.profile.component == component)
         return replace(self, candidates=(*self.candidates[:role], only, *self.candidates[role + 1 :]))
 
+    def with_sent_requests(self, hierarchy: Hierarchy) -> Partition:
+        """The partition in which each operation that is needed knows all that its request is under a hierarchy."""
+        if hierarchy.flat:
+            return self
+        # One look at each candidate in C, then one at each choice of ports that they share.
+        components = (*(one for some in self.candidates for one in some), *self.recruits)
+        distinct = {id(ports): ports for ports in map(_PORTS, components)}
+        changed = {key: _raised(ports, hierarchy) for key, ports in distinct.items() if _sends(ports)}
+        if not changed:
+            return self
+
+        def told(some: Iterable[_C]) -> tuple[_C, ...]:
+            return tuple(
+                replace(one, profile=replace(one.profile, ports=changed[id(one.profile.ports)]))
+                if id(one.profile.ports) in changed
+                else one
+                for one in some
+            )
+
+        return replace(self, candidates=tuple(map(told, self.candidates)), recruits=told(self.recruits))
+
     def _narrowed(self, left: tuple[tuple[Candidate, ...], ...], recruits: tuple[Recruit, ...]) -> Partition:
         """The partition with these candidates, and without the values of variables that none of them states."""
         kept = [_places_stated(variable, number, left) for number, variable in enumerate(self.variables)]
@@ -194,6 +220,23 @@ def _moved(mask: int, kept: Sequence[int]) -> int:
     if mask < 0:
         return ANY_VALUE & ~sum(1 << bit for bit, place in enumerate(kept) if not mask >> place & 1)
     return sum(1 << bit for bit, place in enumerate(kept) if mask >> place & 1)
+
+
+def _sends(ports: Ports) -> bool:
+    return any(port.request is not None for port in ports.inputs)
+
+
+def _raised(ports: Ports, hierarchy: Hierarchy) -> Ports:
+    return shared_ports(tuple(_raised_input(port, hierarchy) for port in ports.inputs), ports.outputs)
+
+
+def _raised_input(port: Input, hierarchy: Hierarchy) -> Input:
+    """A needed operation whose request is known by all that it is; any other input as it is."""
+    condition = port.condition
+    if condition is None or condition.sent is None or condition.sent.type is None:
+        return port
+    sent = condition.sent._replace(kinds=hierarchy.superclasses(condition.sent.type))
+    return port._replace(condition=condition._replace(sent=sent))
 
 
 def candidate_order(profile: Profile) -> tuple[Decimal, str]:

@@ -6,6 +6,7 @@ from decimal import Decimal
 
 import pytest
 
+from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.obstacle import WrongComponent
 from selfconf.model.partition import (
     ANY_VALUE,
@@ -18,8 +19,14 @@ from selfconf.model.partition import (
     candidate_order,
     ordered,
 )
-from selfconf.model.profile import Profile
+from selfconf.model.profile import Ports, Profile, needed_operation
 from selfconf.model.term import IRI
+
+LOW, HIGH, TEXT = IRI("urn:Low"), IRI("urn:High"), IRI("urn:Text")
+ABOVE = Hierarchy([(LOW, HIGH)])
+LOOK, RESET = needed_operation("look", LOW, TEXT), needed_operation("reset", None, TEXT)
+CALLER = Profile(IRI("urn:caller"), ports=Ports((LOOK, RESET)))
+SILENT = Profile(IRI("urn:silent"), ports=Ports((RESET,)))
 
 
 def test_candidates_are_tried_by_preference_and_then_by_iri() -> None:
@@ -100,3 +107,24 @@ def test_two_mentions_of_a_parameter_ask_for_what_both_ask_for() -> None:
     assert some.beside(other) == Mention(p, frozenset((y,)), frozenset((z,)), True)
     assert some.beside(Mention(p)) == Mention(p).beside(some) == some
     assert some.among(frozenset((x,))) == Mention(p, frozenset((x,)), frozenset((z,)))
+
+
+def kinds(profile: Profile) -> list[frozenset[str] | None]:
+    """What each request of a component is known to be."""
+    conditions = [port.condition for port in profile.inputs]
+    return [None if one is None or one.sent is None else one.sent.kinds for one in conditions]
+
+
+def test_a_request_is_all_that_lies_above_it_for_players_and_recruits() -> None:
+    partition = Partition(((Candidate(CALLER), Candidate(SILENT)),), recruits=(Recruit(CALLER, frozenset((0,))),))
+    raised = partition.with_sent_requests(ABOVE)
+    caller, silent = raised.candidates[0]
+    assert kinds(caller.profile) == kinds(raised.recruits[0].profile) == [{LOW, HIGH}, frozenset()]
+    assert silent is partition.candidates[0][1]
+
+
+def test_where_nothing_lies_above_or_nothing_is_sent_all_stays_as_it_is() -> None:
+    partition = Partition(((Candidate(CALLER),),))
+    assert partition.with_sent_requests(NOTHING_ABOVE) is partition
+    silent = Partition(((Candidate(SILENT),),))
+    assert silent.with_sent_requests(ABOVE) is silent

@@ -7,7 +7,7 @@
 `ParameterTest` or a `Count` of others. Of an endpoint `ANY_COMPONENT` asks whether it has a component, and `TYPES` of
 which types they are; `wanted` are those of these that a task may need, `statements` asks for what components of some
 types say, and `prefaced` puts the prefixes before a query. `bound_shape` is the shape of a role with its parameters
-replaced, `with_sent_requests` a partition whose operations know all that is sent along with them under a hierarchy.
+replaced.
 """
 
 from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex
@@ -30,7 +30,6 @@ from selfconf.rdf.eligibility.role_tests import (
     RoleTest,
     SelfTest,
 )
-from selfconf.rdf.eligibility.sent_requests import with_sent_requests
 
 __all__ = [
     "ANY_COMPONENT",
@@ -54,6 +53,5 @@ __all__ = [
     "prefaced",
     "statements",
     "wanted",
-    "with_sent_requests",
     "words_of_role",
 ]

@@ -51,7 +51,6 @@ from selfconf.rdf.eligibility.free_values import (
 from selfconf.rdf.eligibility.judgements import ShapeJudge, Values, Violations
 from selfconf.rdf.eligibility.logical_constraints import in_doubt, passable
 from selfconf.rdf.eligibility.role_tests import CompiledRole, Count
-from selfconf.rdf.eligibility.sent_requests import with_sent_requests
 from selfconf.rdf.eligibility.wanted_signals import required_signals
 from selfconf.rdf.tasks import TaskDocument, free_parameters, mentions, substituted
 from selfconf.rdf.turtle import Document, Triple
@@ -166,7 +165,7 @@ class Partitioner:
     def judged(self, partition: Partition, ecology: AdvertisementIndex) -> Partition:
         """A partition in which ports tell more than their types: what outputs conform to, and what requests are."""
         judged = self._acceptance.judged(self.task.template, partition, partial(self._seen_alone, ecology))
-        return with_sent_requests(judged, self.hierarchy)
+        return judged.with_sent_requests(self.hierarchy)
 
     def _seen_alone(self, ecology: AdvertisementIndex, component: IRI) -> tuple[Triple, ...]:
         """What the shape that an input accepts sees of the component of an output; of others it sees nothing."""
