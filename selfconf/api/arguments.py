@@ -48,11 +48,15 @@ def checked_path(path: str | Path) -> Path:
         raise AuthorError("an empty text is no path; the current folder is '.'")
     if "\0" in str(path):
         raise AuthorError(f"a path holds no null character: {str(path)!r}")
-    found = Path(path)
+    found, wrong = Path(path), ""
     try:
-        found.exists()
+        there = found.exists()
     except OSError as error:  # a name that is too long, or a folder into which only others may look
-        raise AuthorError(f"cannot read {found}: {error.strerror}") from None
+        there, wrong = False, f"cannot read {found}: {error.strerror}"
+    if not there and "\n" in str(path):  # where documents are read, their text is taken as well
+        raise AuthorError("a path is wanted here, and not the text of a document; write it into a file")
+    if wrong:
+        raise AuthorError(wrong)
     return found
 
 

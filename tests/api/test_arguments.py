@@ -67,7 +67,14 @@ def test_a_word_is_an_option_or_is_answered_with_the_options() -> None:
 
 
 @pytest.mark.parametrize(
-    ("path", "why"), [("", "the current folder is"), ("a\0b", "no null character"), ("a" * 300, "File name too long")]
+    ("path", "why"),
+    [
+        ("", "the current folder is"),
+        ("a\0b", "no null character"),
+        ("a" * 300, "File name too long"),
+        (":a a :b .\n" * 99, "not the text of a document; write it into a file"),
+        (":a a :b .\n", "not the text of a document; write it into a file"),
+    ],
 )
 def test_a_text_that_names_no_path_is_refused_in_a_sentence(path: str, why: str) -> None:
     for call in (checked_path, listed_paths):
