@@ -72,13 +72,12 @@ class AtMost(NamedTuple):
 
 
 class Implied(NamedTuple):
-    """Each of the literals implies the literal, which nothing else brings about: a clause of two literals for each.
-
-    Some solvers take them as one constraint.
-    """
+    """Each of the literals implies the literal: a clause of two literals for each, written when a solver reads it."""
 
     literal: int
     literals: Sequence[int]
+    alone: bool = True
+    """Whether nothing else brings the literal about, so that some solvers take them as one constraint."""
 
 
 class Encoding:
@@ -212,7 +211,7 @@ class Encoding:
                 add([*force, -having[0], *supports])
                 continue
             if len(supports) == 1 and not force:
-                self.statements += [[-one, supports[0]] for one in having]
+                add(Implied(supports[0], having, alone=False))
                 continue
             # One literal between both sides, a sum of clauses instead of a product; and one for all needs that the same
             # options support, unless each is put in force by itself.

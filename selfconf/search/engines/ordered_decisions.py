@@ -22,7 +22,7 @@ frequencies it is the other way round. So it works beside the other engines.
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
@@ -131,17 +131,12 @@ def _aspif(encoding: Encoding) -> Iterator[str]:
     # The text of a negative literal is found from the end.
     literal = [*plain, *denied[:0:-1]].__getitem__
     negation = [*denied, *plain[:0:-1]].__getitem__
-    implied = {one.literal for one in encoding.statements if isinstance(one, Implied)}
+    implied = {one.literal for one in encoding.statements if isinstance(one, Implied) and one.alone}
     free = [atom for number, atom in enumerate(plain) if number and number not in implied]
     yield "asp 1 0 0 incremental"
     yield " ".join(["1 1", str(len(free)), *free, "0 0"])
     for statement in encoding.statements:
-        if isinstance(statement, Implied):
-            # As nothing else brings the literal about, it holds iff one of these does.
-            some = " 1 ".join(map(literal, statement.literals))
-            yield f"1 0 1 {statement.literal} 1 1 {len(statement.literals)} {some} 1"
-        else:
-            yield " ".join(["1 0 0 0", str(len(statement)), *map(negation, statement)])
+        yield from _rules(statement, literal, negation)
     for literals, most, force in encoding.bounds:
         assert not force  # for there are no guards
         yield f"1 0 0 1 {most + 1} {len(literals)} {' 1 '.join(map(literal, literals))} 1"
@@ -153,6 +148,17 @@ def _aspif(encoding: Encoding) -> Iterator[str]:
                 yield f"7 4 {option} {level} 0 0"
             level -= 1
     yield "0\n"
+
+
+def _rules(said: list[int] | Implied, literal: Callable[[int], str], negation: Callable[[int], str]) -> Iterable[str]:
+    """Return the lines of a statement, given what returns the text of a literal, and that of its negation."""
+    if not isinstance(said, Implied):
+        return [" ".join(["1 0 0 0", str(len(said)), *map(negation, said)])]
+    if not said.alone:
+        missing = negation(said.literal)
+        return [f"1 0 0 0 2 {literal(one)} {missing}" for one in said.literals]
+    # As nothing else brings the literal about, it holds iff one of these does.
+    return [f"1 0 1 {said.literal} 1 1 {len(said.literals)} {' 1 '.join(map(literal, said.literals))} 1"]
 
 
 def _folder_for_files() -> bool:

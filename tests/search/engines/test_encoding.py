@@ -8,7 +8,7 @@ from itertools import product
 import pytest
 
 from benchmarks.search.families.puzzles import pigeonholes
-from selfconf.search.engines.encoding import Encoding
+from selfconf.search.engines.encoding import Encoding, Implied
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import Constraint, Distinct, Fed, Played, pruned, reduced
 from tests.search.oracle import World
@@ -182,3 +182,11 @@ def test_what_was_not_counted_at_first_can_be_added() -> None:
     assert added
     assert sorted(part.clauses()) == sorted(whole.clauses())
     assert part.count() == whole.count() == []
+
+
+def test_options_with_a_need_that_one_option_supports_are_written_as_one() -> None:
+    minds = [component(f"mind{number}", "i:Image", f"o:Thought{number}") for number in range(3)]
+    encoding = Encoding(reduced(problem({"eye": [EYES[0], component("deaf")], "mind": minds}, "eye>mind")))
+    (seen,) = [one for one in encoding.statements if isinstance(one, Implied)]
+    assert (seen.literal, list(seen.literals), seen.alone) == (encoding.plays[0][0], list(encoding.plays[1]), False)
+    assert [[-mind, seen.literal] for mind in seen.literals] == [one for one in encoding.clauses() if len(one) == 2]
