@@ -741,6 +741,14 @@ CODES: tuple[Code, ...] = (
         severity=Severity.WARNING,
     ),
     Code(
+        "SC-L33", "What an ontology imports is loaded as well.",
+        "Nothing is fetched because a file names it. The terms and hierarchies of an imported ontology count where its "
+        "file is given as an ontology, or is validated beside this one.",
+        "<https://example.org/home> a owl:Ontology ; owl:imports <https://example.org/base> .",
+        "<https://example.org/home> a owl:Ontology ; owl:imports <https://w3id.org/selfconf/robotics> .",
+        severity=Severity.WARNING,
+    ),
+    Code(
         "SC-P01", "A project file is TOML.",
         "Nothing else can be said of a file that is not TOML 1.0, encoded in UTF-8.",
         'ecology = home', 'ecology = "home"',

@@ -16,7 +16,7 @@ import re
 from decimal import Decimal
 from fractions import Fraction
 
-from selfconf.model.term import XSD_NAMESPACE, Literal, Term
+from selfconf.model.term import STRING, XSD_NAMESPACE, Literal, Term
 
 MOST_CHARACTERS = 300
 """A longer text is no measurement. The bound also keeps every decimal within the range of a double, and its fraction
@@ -147,9 +147,11 @@ def truth(term: Term | None) -> bool | None:
 def of_range(lexical: str, datatype: str, wanted: str) -> bool:
     """Whether a literal is what a property of a datatype wants: any number for one of fractions, else just that.
 
-    Infinity and not-a-number are values of a float. Everything is what a datatype wants that is none of numbers, truth
-    values or short texts (`TEXT_PATTERNS`).
+    Infinity and not-a-number are values of a float. A text is whatever is no number and no truth value. Everything is
+    what a datatype wants that is none of numbers, truth values, texts or short texts (`TEXT_PATTERNS`).
     """
+    if wanted == STRING:
+        return datatype not in DATATYPES and datatype != BOOLEAN
     if wanted in WHOLE_NUMBERS:
         return datatype in DATATYPES and number_of(lexical, wanted) is not None
     if wanted in DATATYPES:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from selfconf.model.literal_values import natural_number
+from selfconf.model.literal_values import in_lexical_space, natural_number
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.rdf.permitted_fields import LISTS_OF_SHAPES, SHAPE_VALUED
 from selfconf.rdf.shacl.patterns import pattern_fault
@@ -66,7 +66,7 @@ WANTED: dict[IRI, str] = {
     **dict.fromkeys(SWITCHES, "true or false"),
     **dict.fromkeys(LISTS, "a list in parentheses"),
     **dict.fromkeys(LISTS_OF_SHAPES, "a list in parentheses, of one shape at least"),
-    SH.languageIn: "a list in parentheses, of language tags",
+    SH.languageIn: 'a list in parentheses, of language tags such as "en" or "de-AT"',
     SH.ignoredProperties: "a list in parentheses, of properties",
     **dict.fromkeys(NAMES, "an IRI"),
     **dict.fromkeys(LIMITS, "a literal"),
@@ -177,10 +177,15 @@ def _is_list(document: Document, predicate: IRI, value: Term, variables: frozens
         return predicate not in LISTS_OF_SHAPES
     members = [member for member in document.items(value) if member not in variables]
     if predicate == SH.languageIn:
-        fit = all(isinstance(member, Literal) and member.datatype == XSD.string for member in members)
+        fit = all(isinstance(member, Literal) and _is_language_range(member) for member in members)
     else:
         fit = predicate != SH.ignoredProperties or all(isinstance(member, IRI) for member in members)
     return document.list_fault(value) is None and fit
+
+
+def _is_language_range(member: Literal) -> bool:
+    """Whether a literal may be in `sh:languageIn`: a tag such as en or de-AT, with hyphens, no underscores."""
+    return member.datatype == XSD.string and in_lexical_space(member.lexical, XSD.language)
 
 
 def _fitting_node(document: Document, predicate: IRI, value: Term) -> bool:

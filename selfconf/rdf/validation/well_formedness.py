@@ -23,7 +23,7 @@ from rdflib import RDF, SH, XSD, Graph, Literal, URIRef
 from rdflib.term import Node
 
 from selfconf.model.diagnostic import Diagnostic
-from selfconf.model.literal_values import natural_number
+from selfconf.model.literal_values import in_lexical_space, natural_number
 from selfconf.model.term import IRI
 from selfconf.rdf.conformance import aimed, first_line, judged, reason_of
 from selfconf.rdf.permitted_fields import DEEPEST_SHAPE, LISTS_OF_SHAPES, SHAPE_VALUED
@@ -103,7 +103,7 @@ def malformed_roles(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
         shapes.add((shape, RDF.type, SH.PropertyShape if (shape, SH.path, None) in graph else SH.NodeShape))
     faults = [*_with_own_path(shapes, graph, positions), *_literals(shapes, positions)]
     faults += _faults(shapes, graph, positions)
-    faults += [fault for look in (_alone, _patterns, _queries) for fault in look(graph, positions)]
+    faults += [fault for look in (_alone, _languages, _patterns, _queries) for fault in look(graph, positions)]
     faults += _too_deep(shapes, roles, positions)
     plain = [fault for fault in faults if fault.message != ILL_FORMED]
     yield from plain or faults
@@ -270,6 +270,16 @@ def _literals(shapes: Graph, positions: Positions) -> Iterator[Diagnostic]:
             offsets = positions.triples.get((shape, predicate, value))
             if isinstance(value, Literal) and offsets is not None:
                 yield at(positions, offsets.object, "SC-T13", unfit(IRI.unchecked(predicate)))
+
+
+def _languages(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
+    """Languages that are no tags, as with an underscore, which the shape of shapes overlooks."""
+    for shape, head in graph.subject_objects(SH.languageIn):
+        cells = graph.transitive_objects(head, RDF.rest)
+        tags = [str(tag) for cell in cells for tag in graph.objects(cell, RDF.first) if isinstance(tag, Literal)]
+        if not all(in_lexical_space(tag, str(XSD.language)) for tag in tags):
+            offset = positions.triples[shape, SH.languageIn, head].object
+            yield at(positions, offset, "SC-T13", unfit(IRI.unchecked(SH.languageIn)))
 
 
 def _alone(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:

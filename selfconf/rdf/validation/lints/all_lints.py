@@ -16,12 +16,18 @@ from selfconf.rdf.validation.lints.signal_classes import (
     misplaced_classes_in_shapes,
     signals_among_types,
 )
-from selfconf.rdf.validation.lints.sources import incommensurable_units, misnamed_units, unmet_shapes
+from selfconf.rdf.validation.lints.sources import (
+    incommensurable_units,
+    misnamed_units,
+    paths_from_outputs,
+    unmet_shapes,
+)
 from selfconf.rdf.validation.lints.templates import (
     borrowed_parameters,
     idle_words,
     impossible_inputs,
     impossible_roles,
+    nameless_values,
     paths_from_components,
     properties_of_roles,
     queried_parameters,
@@ -36,7 +42,9 @@ from selfconf.rdf.validation.lints.templates import (
 )
 from selfconf.rdf.validation.lints.terms import (
     classes_as_properties,
+    imported_ontologies,
     literals_for_iris,
+    literals_for_terms,
     local_components,
     misplaced_terms,
     ownerless_ports,
@@ -63,6 +71,7 @@ WORDS: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
     unknown_terms,
     properties_as_classes,
     classes_as_properties,
+    imported_ontologies,
     repeated_descriptions,
     prefixes,
     undeclared_prefixes,
@@ -73,6 +82,7 @@ WORDS: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
     misplaced_terms,
     templates_as_groundings,
     literals_for_iris,
+    literals_for_terms,
     unfit_literals,
     local_components,
     misnamed_units,
@@ -98,11 +108,13 @@ TEMPLATES: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
     properties_of_roles,
     queried_parameters,
     impossible_roles,
+    nameless_values,
     impossible_inputs,
     idle_loops,
     starving_inputs,
     unjoined_optional_roles,
     incommensurable_units,
+    paths_from_outputs,
     unmet_shapes,
 )
 """The lints that run on a file only where its templates conform: the others would say what SHACL has said."""

@@ -50,6 +50,11 @@ def misplaced_classes_in_shapes(file: LintedFile) -> Iterator[Diagnostic]:
             steps = "sc:signalType" if last is None else f"( {file.short(str(last))} sc:signalType )"
             hint = f"Ask for its signal type: sh:property [ sh:path {steps} ; sh:hasValue {short} ]."
             yield file.at(offset, "SC-L28", message, hint=hint)
+        elif (last in _PORT_LINKS or shape in accepting) and file.index.classes_components(str(kind)):
+            message = f"{short} is a kind of components, and no port is a component."
+            owner = f"sh:property [ sh:path [ sh:inversePath {file.short(SC.hasOutput)} ] ; sh:class {short} ]"
+            asked = f"Ask it of the component: {owner}." if last is None else None
+            yield file.at(offset, "SC-L28", message, hint=asked)
         elif last in _TYPE_LINKS and word == SH["class"]:
             message = (
                 f"This asks for a signal of the type {short}, and {file.short(str(last))} leads to the type itself."

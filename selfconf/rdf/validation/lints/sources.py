@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from rdflib import SH, Graph, Literal, URIRef
+from rdflib import RDF, SH, Graph, Literal, URIRef
 from rdflib.term import Node
 
 from selfconf.errors import AuthorError
@@ -18,8 +18,10 @@ from selfconf.model.term import IRI
 from selfconf.model.term import Literal as TypedLiteral
 from selfconf.model.unit_dimension import differ_in_dimension, meant_unit
 from selfconf.rdf.conformance import violations
+from selfconf.rdf.permitted_fields import OF_COMPONENT
 from selfconf.rdf.rdflib_terms import from_rdflib
 from selfconf.rdf.validation.lints.linted_file import LintedFile
+from selfconf.rdf.validation.lints.normal_form import NormalForm
 from selfconf.rdf.vocabulary import SC, UNIT
 
 _INPUT, _OUTPUT, _UNIT, _SIGNAL = (URIRef(one) for one in (SC.hasInput, SC.hasOutput, SC.unit, SC.signalType))
@@ -51,6 +53,20 @@ def misnamed_units(file: LintedFile) -> Iterator[Diagnostic]:
         if meant is not None:
             message = f"QUDT has no unit {file.short(str(unit))}; did you mean {file.short(UNIT[meant])}?"
             yield file.at(file.positions.triples[port, _UNIT, unit].object, "SC-L23", message)
+
+
+def paths_from_outputs(file: LintedFile) -> Iterator[Diagnostic]:
+    """Paths of what inputs accept that begin with what components say, and outputs do not: they lead nowhere."""
+    for shape in sorted(set(file.graph.objects(None, _ACCEPTS)), key=file.offset):
+        for path, values in NormalForm(file.source, (shape,)).values.items():
+            step = str(next((one for one in path if one != RDF.first), ""))
+            for asking in values.shapes if step in OF_COMPONENT else ():
+                for said in file.graph.objects(asking, SH.path):
+                    short, link = file.short(step), file.short(str(_OUTPUT))
+                    message = f"{short} is said of a component, so no output has one."
+                    rest = "" if step == str(_OUTPUT) else f" {short}"
+                    hint = f"The component of an output is [ sh:inversePath {link} ]{rest}."
+                    yield file.at(file.positions.triples[asking, SH.path, said].object, "SC-L25", message, hint=hint)
 
 
 def unmet_shapes(file: LintedFile) -> Iterator[Diagnostic]:

@@ -335,6 +335,18 @@ def impossible_roles(file: LintedFile) -> Iterator[Diagnostic]:
                 yield _contradiction(file, shape, conflict, effect, "SC-L19")
 
 
+def nameless_values(file: LintedFile) -> Iterator[Diagnostic]:
+    """Lists and nodes in brackets as the value that a shape asks for: no component of another file has it."""
+    for shape, value in file.graph.subject_objects(SH.hasValue):
+        if isinstance(value, BNode):
+            is_list = (value, RDF.first, None) in file.graph
+            hint = "Of several values any one is sh:in ( ... )." if is_list else "Name it by an IRI."
+            message = (
+                f"This is a {'list' if is_list else 'node'} of this file alone, so no component has it as a value."
+            )
+            yield file.at(file.positions.triples[shape, SH.hasValue, value].object, "SC-L11", message, hint=hint)
+
+
 def impossible_inputs(file: LintedFile) -> Iterator[Diagnostic]:
     """What inputs accept that contradicts itself, or what holds of every output."""
     always = list(file.source.applied(SH.targetObjectsOf, URIRef(SC.hasOutput)))

@@ -48,6 +48,10 @@ _LISTS_OF_TERMS = (
     *(OWL.unionOf, OWL.intersectionOf, OWL.disjointUnionOf, OWL.propertyChainAxiom),
 )
 """What has a list of terms, or a path, which may be one."""
+_NAMING_TERMS = frozenset(
+    (RDFS.domain, RDFS.range, OWL.inverseOf, OWL.disjointWith, OWL.onProperty, OWL.onClass, OWL.imports)
+)
+"""What leads to a term or an ontology, and is not read as a hierarchy; of that the shapes tell."""
 VALUES = frozenset((SH.hasValue, SH.minInclusive, SH.minExclusive, SH.maxInclusive, SH.maxExclusive))
 """What shapes compare values with."""
 _OF_PARTS_OF_TEMPLATES: Mapping[IRI, tuple[IRI, ...]] = {
@@ -246,6 +250,17 @@ def _closest(word: str, known: list[str]) -> str | None:
     return alike[0] if alike else None
 
 
+def imported_ontologies(file: LintedFile) -> Iterator[Diagnostic]:
+    """Imports of ontologies that are not loaded: nothing is fetched, so what they declare is not known."""
+    for ontology, imported in file.graph.subject_objects(OWL.imports):
+        names = {f"{str(imported).rstrip('#/')}{end}" for end in ("", "#", "/")}
+        here = any((URIRef(name), None, None) in file.graph for name in names)
+        if isinstance(imported, URIRef) and not here and names.isdisjoint(file.index.terms):
+            statement = file.positions.triples[ontology, OWL.imports, imported]
+            message = f"The ontology <{imported}> is not loaded, as imports are not followed."
+            yield file.at(statement.object, "SC-L33", message, hint="Give its file as an ontology, too.")
+
+
 def repeated_descriptions(file: LintedFile) -> Iterator[Diagnostic]:
     """Components that another file describes as well, and templates that another describes otherwise."""
     for thing, other in file.elsewhere.items():
@@ -394,6 +409,14 @@ def literals_for_iris(file: LintedFile) -> Iterator[Diagnostic]:
             )
 
 
+def literals_for_terms(file: LintedFile) -> Iterator[Diagnostic]:
+    """Literals where RDFS and OWL name a term: a range in quotation marks is the range of nothing."""
+    for (_, predicate, value), offsets in file.positions.triples.items():
+        if isinstance(value, Literal) and predicate in _NAMING_TERMS:
+            message = f"The value of {file.short(str(predicate))} is a term with an IRI, not a literal."
+            yield file.at(offsets.object, "SC-L07", message, hint="Write it without quotation marks, with its prefix.")
+
+
 def unfit_literals(file: LintedFile) -> Iterator[Diagnostic]:
     """Literals that are not of the datatype that their property has, or not written as that is."""
     for predicate, value, offset in _values(file):
@@ -418,6 +441,8 @@ def _values(file: LintedFile) -> Iterator[tuple[str, Node, int]]:
 def _written(text: str, datatype: str, file: LintedFile) -> str:
     """A text as a literal of a datatype, if it is one; an example otherwise."""
     known = len(text) <= MOST_CHARACTERS and of_range(text, datatype, datatype)
+    if datatype == str(XSD.string):
+        return f'"{text}"' if known else "it in quotation marks"
     if datatype == str(XSD.boolean):
         return "true or false" if text not in TRUTH else "true" if TRUTH[text] else "false"
     if datatype in DATATYPES and (not known or number_of(text, datatype) is not None):
