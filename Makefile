@@ -99,7 +99,7 @@ package: $(VENV)/with-dev
 
 $(VENV)/python:
 	@test -n "$(PYTHON)" || { echo "selfconf needs Python 3.10 or newer; install python3.11 and try again" >&2; exit 2; }
-	$(PYTHON) -m venv $(VENV)
+	pip=$$($(PYTHON) -m supply.pins bundled) && $(PYTHON) -m venv $${pip:+--without-pip} $(VENV)
 	@touch $@
 
 # Every file that is installed has a hash in requirements.txt, and nothing else is looked for: not even what builds the
@@ -107,8 +107,16 @@ $(VENV)/python:
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 SELECT  := $(BIN)/python -m supply.pins select
 
+# The pip that is pinned installs so many packages in half the time of the one that comes with Python. That one need not
+# be installed to install it, as `venv` does: it runs from its wheel, which saves three seconds.
+$(VENV)/pip: $(VENV)/python requirements.txt
+	$(BIN)/python -m supply.pins installer >$(VENV)/installer.txt
+	PYTHONPATH=$$($(BIN)/python -m supply.pins bundled) $(INSTALL) --no-compile --require-hashes --no-deps \
+		-r $(VENV)/installer.txt
+	@touch $@
+
 # The extras by the Python there is: PyBullet has wheels for 3.10 and 3.11 on Linux x86_64 only.
-$(VENV)/with-sim: $(VENV)/python pyproject.toml requirements.txt
+$(VENV)/with-sim: $(VENV)/pip pyproject.toml requirements.txt
 	@$(BIN)/python -c 'import platform, sys; sys.exit(not ((3, 10) <= sys.version_info < (3, 12) \
 		and sys.platform == "linux" and platform.machine() == "x86_64"))' \
 	|| { echo "the demo needs PyBullet, which has wheels for Python 3.10 and 3.11 on Linux x86_64 only:" \
@@ -118,13 +126,11 @@ $(VENV)/with-sim: $(VENV)/python pyproject.toml requirements.txt
 	$(INSTALL) --no-deps --no-build-isolation -e .
 	@touch $@
 
-# The pip that is pinned installs so many packages in half the time of the one in `venv`, and leaves it to Python to
-# compile what is imported, which is a quarter. It computes more than it fetches, so two do it in half the time.
+# It is left to Python to compile what is imported, which is a quarter. pip computes more than it fetches, so two do it
+# in half the time.
 DEV_EXTRAS  := build sim solvers serve keys wot ros2 dev
 INSTALL_DEV := $(INSTALL) --no-compile --require-hashes --no-deps -r $(VENV)/dev
-$(VENV)/with-dev: $(VENV)/python pyproject.toml requirements.txt
-	$(BIN)/python -m supply.pins installer >$(VENV)/installer.txt
-	$(INSTALL) --require-hashes --no-deps -r $(VENV)/installer.txt
+$(VENV)/with-dev: $(VENV)/pip pyproject.toml requirements.txt
 	for half in 1 2; do $(SELECT) --half $$half $(DEV_EXTRAS) >$(VENV)/dev-$$half.txt || exit; done
 	$(INSTALL_DEV)-1.txt & one=$$!; $(INSTALL_DEV)-2.txt; other=$$?; wait $$one && exit $$other
 	$(INSTALL) --no-deps --no-build-isolation -e .

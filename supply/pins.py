@@ -1,14 +1,15 @@
 """The pinned versions in requirements.txt: writes them anew, and selects those that some extras need.
 
     python -m supply.pins installer            prints the part for pip, which installs the others
+    python -m supply.pins bundled              prints the path of the pip that comes with Python, if it can run from it
     python -m supply.pins select build sim     prints the part for these extras, for `pip install --require-hashes`
     python -m supply.pins select --half 1 dev  prints half of that part: two pips install it side by side
     python -m supply.pins renew [--upgrade]    writes the file; needs uv (`pip install uv`), and the registry of pip
 
 The file has the SHA-256 of every file of every version, for all platforms, and names no registry. pip takes hashes from
 requirements only, and not from constraints, so what is not wanted has to be left out. Therefore each requirement says
-in a comment above it who needs it: the core (`-`), an extra, or `build`, which builds the package. `installer` and
-`select` need nothing but Python, as they run in a virtual environment in which nothing is installed.
+in a comment above it who needs it: the core (`-`), an extra, or `build`, which builds the package. `installer`,
+`bundled` and `select` need nothing but Python, as they run where nothing is installed.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ import re
 import shutil
 import subprocess
 import sys
+import sysconfig
 import tempfile
 from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
@@ -61,6 +63,19 @@ def installer(text: str) -> str:
         if _name(requirement) == "pip":
             return f"{requirement}\n"
     raise SystemExit(f"{FILE}: pip is not pinned; type: python -m supply.pins renew")
+
+
+def bundled() -> Path | None:
+    """The wheel of the pip that comes with Python, from which pip runs without being installed; None without one.
+
+    Python keeps it where `ensurepip` finds it; distributions of Linux may keep it in a folder of their own.
+    """
+    try:
+        import ensurepip
+    except ImportError:  # some distributions have a package of its own for it
+        return None
+    folders = Path(ensurepip.__file__).parent / "_bundled", sysconfig.get_config_var("WHEEL_PKG_DIR")
+    return next((wheel for folder in folders if folder for wheel in Path(folder).glob("pip-*.whl")), None)
 
 
 def renew(upgrade: bool) -> str:
@@ -136,10 +151,13 @@ def main() -> None:
     select = commands.add_parser("select", help="print those of some extras")
     select.add_argument("extras", nargs="*")
     select.add_argument("--half", type=int, choices=[1, 2], help="print one half of them alone")
+    commands.add_parser("bundled", help="print the path of the pip that comes with Python")
     commands.add_parser("renew", help="write them anew").add_argument("--upgrade", action="store_true")
     given = parser.parse_args()
     if given.command == "installer":
         sys.stdout.write(installer(FILE.read_text("utf-8")))
+    elif given.command == "bundled":
+        print(bundled() or "")
     elif given.command == "select":
         sys.stdout.write(selected(FILE.read_text("utf-8"), given.extras, given.half))
     else:

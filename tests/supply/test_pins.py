@@ -13,7 +13,7 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 from supply import pins
-from supply.pins import FILE, ROOT, installer, requirements, selected
+from supply.pins import FILE, ROOT, bundled, installer, requirements, selected
 
 TEXT = FILE.read_text("utf-8")
 EXTRAS = ("sim", "solvers", "serve", "keys", "wot", "ros2", "dev", "fast-owl", "bench")
@@ -107,6 +107,17 @@ def test_the_installer_is_pip_alone_and_is_selected_in_a_bare_python() -> None:
 def test_an_installer_that_is_not_pinned_is_a_sentence() -> None:
     with pytest.raises(SystemExit, match="pip is not pinned"):
         installer(TEXT.replace("\npip==", "\npop=="))
+
+
+def test_the_pip_that_comes_with_python_runs_from_its_wheel(monkeypatch: pytest.MonkeyPatch) -> None:
+    wheel = bundled()
+    if wheel is None:
+        pytest.skip("no pip comes with this Python")
+    command = [sys.executable, "-S", "-m", "pip", "--version"]  # without what is installed
+    said = subprocess.run(command, capture_output=True, text=True, check=True, env={"PYTHONPATH": str(wheel)}).stdout
+    assert f" from {wheel}" in said
+    monkeypatch.setitem(sys.modules, "ensurepip", None)
+    assert bundled() is None
 
 
 def test_an_extra_that_is_not_pinned_is_a_sentence() -> None:
