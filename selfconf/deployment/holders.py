@@ -43,19 +43,27 @@ def ask_holders(
     """
 
     def answered(replies: Replies) -> None:
-        holdings = _holdings(replies, keys, own)
-        known = {one.holder.task for one in holdings}
-        done(_first_holders([*holdings, *without_configurator(known)]))
+        done(holders_in(replies, keys, own, without_configurator))
 
     bus.ask(keys.configurator_call("*", "status"), b"", STATUS, answered)
 
 
-def holders_in(replies: Replies, keys: Keys) -> Mapping[IRI, Holder]:
-    """The holder of each component by the answers of configurators; an answer that is none is passed over."""
-    return _first_holders(_holdings(replies, keys))
+def holders_in(
+    replies: Replies,
+    keys: Keys,
+    own: str = "",
+    without_configurator: WithoutConfigurator = lambda known: (),
+) -> Mapping[IRI, Holder]:
+    """The holder of each component by the answers of configurators, as `ask_holders` counts them.
+
+    An answer that is none is passed over.
+    """
+    holdings = _holdings(replies, keys, own)
+    known = {one.holder.task for one in holdings}
+    return _first_holders([*holdings, *without_configurator(known)])
 
 
-def _holdings(replies: Replies, keys: Keys, own: str = "") -> list[Holding]:
+def _holdings(replies: Replies, keys: Keys, own: str) -> list[Holding]:
     found: list[Holding] = []
     statuses, _ = own_answers(replies.samples, Status, lambda one: keys.configurator_call(one.configurator, "status"))
     for status in statuses:

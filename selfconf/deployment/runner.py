@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from itertools import islice
 
-from selfconf.bus.port import Bus
+from selfconf.bus.port import Bus, Replies
 from selfconf.configurator import (
     Accepted,
     Adopted,
@@ -141,8 +141,12 @@ class TaskRunner:
         self._leave = bus.announce(self.supervisor)
         self._unsubscribe = bus.subscribe(self.keys.changed(), lambda _: self._step(Appeared({})))
 
-    def start(self, lost: tuple[RecordedLoss, ...] = ()) -> None:
-        """Begin with act 1, without what another configurator of the task had lost, as its `recorded_losses` said."""
+    def start(self, lost: tuple[RecordedLoss, ...] = (), statuses: Replies | None = None) -> None:
+        """Begin with act 1, without what another configurator of the task had lost, as its `recorded_losses` said.
+
+        `statuses` is what the configurators of the ecology have answered just before, where they were asked.
+        """
+        self._discovery.just_answered = statuses
         self._components.begin()
         self._step(Accepted(int(self.clock() * 1000), lost))
 

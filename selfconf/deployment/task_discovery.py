@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from selfconf.bus.port import Replies
 from selfconf.configurator import Appeared, Discovered, Failed, Loss
 from selfconf.deployment.components import Liveness
-from selfconf.deployment.holders import ask_holders
+from selfconf.deployment.holders import ask_holders, holders_in
 from selfconf.deployment.task_context import TaskContext
 from selfconf.discovery import Discovery
 from selfconf.model.holder import Holder
@@ -29,6 +30,8 @@ class TaskDiscovery:
         """How often the ecology was asked."""
         self._told: tuple[AnyRunEvent, ...] = ()
         """What was reported of the last answers."""
+        self.just_answered: Replies | None = None
+        """What the other configurators have just answered, if they have: they are not asked again the next time."""
 
     def begin(self) -> None:
         """Ask the sites what they advertise, and meanwhile the other tasks what they hold.
@@ -57,7 +60,11 @@ class TaskDiscovery:
             held.append(holders)
             both()
 
-        ask_holders(self._bus, self._ecology.keys, self._name, answered, self._without_configurator)
+        replies, self.just_answered = self.just_answered, None
+        if replies is None:
+            ask_holders(self._bus, self._ecology.keys, self._name, answered, self._without_configurator)
+        else:
+            answered(holders_in(replies, self._ecology.keys, self._name, self._without_configurator))
         self._ecology.discover(discovered)
 
     def _tell(self, discovery: Discovery) -> None:

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from selfconf.bus.port import Bus, Replies
 from selfconf.configurator.state import Phase
+from selfconf.deployment import task_discovery
+from selfconf.deployment.holders import ask_holders
 from selfconf.deployment.improvement import LET_GO_OF
-from selfconf.deployment.runner import RETURN
+from selfconf.deployment.runner import RETURN, TaskRunner
+from selfconf.protocol.keys import Keys
 from selfconf.render.run_events import event_body
 from tests.deployment.tasks import DRIVEN, SPARE, TASK, contended
 from tests.lab import Lab, iri
@@ -28,6 +33,29 @@ def test_a_refusal_says_of_all_that_is_held_by_whom_and_since_when(tmp_path: Pat
         iri(name): (f"holds-{name}", one.identity.beginning) for name, one in zip(SPARE, holding, strict=True)
     }
     assert [one["task"] for one in event_body(event)["refusal"]["held"]] == ["holds-left", "holds-right"]
+
+
+def test_other_tasks_are_not_asked_again_for_what_they_have_just_answered(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lab, holding = contended(tmp_path)
+    asked, answers = list[str](), list[Replies]()
+    lab.network.node().ask(lab.keys.configurator_call("*", "status"), b"", 1.0, answers.append)
+    assert lab.until(lambda: bool(answers))
+
+    def ask(bus: Bus, keys: Keys, own: str, *rest: Any) -> None:
+        asked.append(own)
+        ask_holders(bus, keys, own, *rest)
+
+    monkeypatch.setattr(task_discovery, "ask_holders", ask)
+    begin = TaskRunner.start
+    monkeypatch.setattr(TaskRunner, "start", lambda runner: begin(runner, statuses=answers[0]))
+    agent = lab.agent(DRIVEN, (), name="third")
+    assert lab.until(lambda: agent.state.phase is not Phase.DISCOVERING)
+    assert {one.configurator for one in agent.state.taken.values()} == {one.name for one in holding}
+    assert asked == []
+    assert lab.until(lambda: bool(lab.acts("refused")))
+    assert asked == [agent.name] * (len(lab.acts("query")) - 1 - len(holding)), "what was answered once counts once"
 
 
 def test_a_task_that_looks_again_and_again_for_something_better_tells_once_what_the_ecology_has(tmp_path: Path) -> None:

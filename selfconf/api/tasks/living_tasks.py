@@ -34,6 +34,8 @@ class LivingTasks:
         """The bus has joined by some endpoints; runs of this machine that have joined by others are not looked at."""
         self._bus, self._keys, self._endpoints = bus, keys, endpoints
         self._released = ReleasedComponents(bus, keys)
+        self.statuses: Replies | None = None
+        """What configurators have answered when a name was last looked for in the ecology, if it was."""
 
     def running(self, by_components: bool = False) -> RunningTasks:
         """What the configurators of the ecology say of the tasks that they run.
@@ -94,29 +96,49 @@ class LivingTasks:
         No task of the ecology has it, and none of this machine begins under it in the same moment. Raises NetworkError
         if that cannot be.
         """
-        questions = [(self._keys.configurator_call("*", "status"), b""), (self._keys.kept_tasks(), b"")]
-        running, kept = self._bus.ask_each(questions)
-        taken = {status.name for status in _statuses(running, self._keys)[0]}
-        taken |= {task_name(record.task) for record in _newest(kept) if not record.ended}
+        running, kept = self._ask_for_names()
+        taken = {status.name for status in running} | kept
         further = (f"{wanted[:UNNUMBERED]}-{number}" for number in count(2)) if numbered else ()
         for name in chain([wanted], further):
-            claimed = None if name in taken else claim(self._keys.ecology, name, self._endpoints)
+            claimed = None if name in taken else self._claimed_here(name)
             if claimed is not None:
                 return claimed
         raise _taken(wanted)
 
+    def claim_here(self, wanted: str) -> ClaimedName:
+        """Claim a name for a task among those of this machine; `check_alone` then looks for it in the whole ecology.
+
+        Raises NetworkError if it is taken.
+        """
+        claimed = self._claimed_here(wanted)
+        if claimed is None:
+            raise _taken(wanted)
+        return claimed
+
     def check_alone(self, task: str, beginning: float) -> None:
-        """Raise NetworkError if a task has the name of this one that has begun in the same moment, on another host.
+        """Raise NetworkError if another task has the name of this one, or has begun with it in the same moment.
 
         Of two that see each other before they run, the one that goes on is the same for both.
         """
         from selfconf.configurator import Phase  # here: a program that only looks on runs nothing
 
-        replies = self._bus.ask(self._keys.configurator_call("*", "status"))
-        for other in _statuses(replies, self._keys)[0]:
+        running, kept = self._ask_for_names()
+        if task_name(task) in kept:
+            raise _taken(task_name(task))
+        for other in running:
             before = other.phase != Phase.IDLE.value or (other.beginning, other.task) < (beginning, task)
             if other.outside is None and other.name == task_name(task) and other.task != task and before:
                 raise _taken(other.name)
+
+    def _ask_for_names(self) -> tuple[list[Status], set[str]]:
+        """What the configurators say of their tasks, and the names of the tasks that live in the sites."""
+        questions = [(self._keys.configurator_call("*", "status"), b""), (self._keys.kept_tasks(), b"")]
+        self.statuses, kept = self._bus.ask_each(questions)
+        names = {task_name(record.task) for record in _newest(kept) if not record.ended}
+        return _statuses(self.statuses, self._keys)[0], names
+
+    def _claimed_here(self, name: str) -> ClaimedName | None:
+        return claim(self._keys.ecology, name, self._endpoints)
 
     def detach(self, record: TaskRecord) -> str:
         """Hand a task to the sites; returns its name. Raises NetworkError if none keeps it, or if its name is taken."""

@@ -122,8 +122,10 @@ class Run:
         try:
             with ExitStack() as undone:
                 tasks = self._tasks(bus)
-                # A name that no other task of the ecology has: `stop` goes by it.
-                claimed = undone.enter_context(tasks.claim(self.wanted_name, numbered=not self._named))
+                # A name that no other task of the ecology has: `stop` goes by it. One that was given is looked for in
+                # the ecology when this task can be seen there as well.
+                name = self.wanted_name
+                claimed = undone.enter_context(tasks.claim_here(name) if self._named else tasks.claim(name, True))
                 request = replace(self._request, name=claimed.name)
                 runner = TaskRunner(bus, self._membership.ecology, request, self._membership.configurator_name())
                 if self._named:
@@ -135,7 +137,7 @@ class Run:
         self.task_name = claimed.name
         self._begun = _Begun(bus, claimed, runner)
         bus.run_aside()
-        bus.wake_up(runner.start)
+        bus.wake_up(partial(runner.start, statuses=tasks.statuses))
         bus.wake_up(self._check)
         return self
 

@@ -17,10 +17,12 @@ from selfconf.api.membership import Membership
 from selfconf.api.method import Method
 from selfconf.api.tasks import work_queue
 from selfconf.api.tasks.run import Run, WorkQueue
+from selfconf.bus.zenoh import ZenohBus
 from selfconf.composition import Composer
 from selfconf.errors import BindingError, NetworkError, ProgrammerError, SelfconfError
 from selfconf.model.configuration import Configuration
 from selfconf.model.refusal import Refusal, Undecided
+from selfconf.protocol.keys import Keys
 from selfconf.values import (
     ComponentLost,
     ComponentReleased,
@@ -61,6 +63,22 @@ def test_events_are_values_in_the_order_in_which_things_happen(served: Home, clo
     assert [event.time for event in seen] == sorted(event.time for event in seen)
     assert all(event.act for event in seen)
     assert run.refusal is None
+
+
+@pytest.mark.parametrize("name", ["", "told"])
+def test_a_run_asks_the_other_tasks_once_for_their_names_and_for_what_they_hold(
+    served: Home, clock: sc.TaskSpecification, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    asked, ask = list[str](), ZenohBus.ask
+
+    def noted(bus: ZenohBus, key: str, *rest: Any, **more: Any) -> None:
+        asked.append(key)
+        ask(bus, key, *rest, **more)
+
+    monkeypatch.setattr(ZenohBus, "ask", noted)
+    with sc.join(served.ecology) as living, living.run(clock, name=name) as run:
+        until(run, TaskRunning)
+    assert asked.count(Keys(served.ecology).configurator_call("*", "status")) == 1
 
 
 def test_a_run_has_events_in_a_with_statement_alone_and_is_entered_once(

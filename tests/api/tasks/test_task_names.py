@@ -10,8 +10,9 @@ import pytest
 from selfconf.api.synchronous_bus import ROLL_CALL
 from selfconf.bus.port import Request
 from selfconf.errors import NetworkError
-from selfconf.protocol.codec import encode
+from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import checked_name
+from selfconf.protocol.messages import Status
 from tests.api.tasks.simulated_tasks import DRIVE, KEYS, PATROL, TIDY, Tasks
 
 
@@ -63,6 +64,20 @@ def test_of_tasks_that_begin_with_one_name_on_several_hosts_the_first_goes_on(ta
     for task, beginning in (("patrol~4", 6.0), ("patrol~4", 5.0), ("watch~4", 4.0)):
         with pytest.raises(NetworkError, match="lives already"):
             tasks.asked.check_alone(task, beginning)
+
+
+def test_a_name_that_was_claimed_on_one_machine_is_looked_for_in_the_whole_ecology(tasks: Tasks) -> None:
+    tasks.configurator("c1", "watch~2")
+    tasks.site(TIDY)
+    with tasks.asked.claim_here("tidy"), tasks.asked.claim_here("watch"), tasks.asked.claim_here("patrol"):
+        with pytest.raises(NetworkError, match="a task 'patrol' lives already"):
+            tasks.asked.claim_here("patrol")
+        for taken in ("tidy", "watch"):
+            with pytest.raises(NetworkError, match=f"a task '{taken}' lives already"):
+                tasks.asked.check_alone(f"{taken}~4", 9.0)
+        tasks.asked.check_alone("patrol~4", 9.0)
+    assert tasks.asked.statuses is not None
+    assert [decode(sample.payload, Status).name for sample in tasks.asked.statuses.samples] == ["watch"]
 
 
 @pytest.mark.parametrize("beginning", [4.0, 6.0])
