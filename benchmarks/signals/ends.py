@@ -1,7 +1,11 @@
-"""The two ends of a connection, each a process: `python -m benchmarks.signals.ends selfconf|bare source|sink ENDPOINT`.
+"""The two ends of a connection, each a process: `python -m benchmarks.signals.ends PROGRAM source|sink ENDPOINT`.
 
 What they are to do comes as lines of JSON on stdin, what they have measured goes as such lines to stdout; they end with
 their stdin. Times are those of the monotonic clock, which all processes of a machine share.
+
+The programs are `selfconf`, `bare` Zenoh, and `least`: as few lines of Python as keep what a signal is promised to be.
+Its source is named, with the life, the number and the time; numbers go out in their order; it is read on another thread
+than Zenoh's, so that slow code holds nothing up; as many wait as events may need, the newest; none is read twice.
 """
 
 from __future__ import annotations
@@ -11,6 +15,7 @@ import os
 import sys
 import threading
 import time
+from collections import deque
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -19,11 +24,16 @@ import orjson
 import zenoh
 
 from selfconf.bus.zenoh import client, open_session
+from selfconf.bus.zenoh.receivers import callback
+from selfconf.model.term import IRI
+from selfconf.protocol.stamps import StampReader, StampWriter
 from selfconf.sdk import Component, Host, Signal
+from selfconf.sdk.code_thread import CodeThread
+from selfconf.sdk.inputs.signal_queue import EVENTS
 
 ECOLOGY = "signals"
 FOLDER_VARIABLE = "SIGNALS_BENCHMARK_FOLDER"
-KEY = "bare/out"
+KEY, LEAST_KEY = "bare/out", "least/out"
 OUTPUTS = {"JSON": "scan", "bytes": "picture"}
 """The output that carries signals of each form."""
 Emit = Callable[[str, Any, int], None]
@@ -157,6 +167,61 @@ def bare_end(role: str, endpoint: str) -> None:
     session.close()
 
 
+def least_end(role: str, endpoint: str) -> None:
+    """A program with the least that keeps what is promised of a signal."""
+    session = open_session("client", connect=[endpoint])
+    if role == "source":
+        publishers = {
+            form: session.declare_publisher(f"{LEAST_KEY}/{form}", congestion_control=zenoh.CongestionControl.DROP)
+            for form in OUTPUTS
+        }
+        stamps = {form: StampWriter(IRI("urn:signals:least"), "1") for form in OUTPUTS}
+        issuing = threading.Lock()
+
+        def emit(form: str, signal: Any, number: int) -> None:
+            payload, raw = (orjson.dumps(signal), False) if form == "JSON" else (signal, True)
+            with issuing:
+                publishers[form].put(payload, attachment=stamps[form].write(number, time.time(), raw))
+
+        obey(SourceEnd(emit))
+    else:
+        end = SinkEnd()
+        code = CodeThread(inline=False)
+        threading.Thread(target=code.run, args=(lambda: False,), daemon=True).start()
+        readers: dict[str, Callable[[bytes], Any]] = {"JSON": orjson.loads, "bytes": len}
+        held = [
+            session.declare_subscriber(f"{LEAST_KEY}/{form}", callback(least_reader(code, end, read)))
+            for form, read in readers.items()
+        ]
+        obey(end)
+        held.clear()
+    session.close()
+
+
+def least_reader(code: CodeThread, end: SinkEnd, read: Callable[[bytes], Any]) -> Callable[[zenoh.Sample], None]:
+    """What Zenoh is to call for a signal, on its own thread: the signal waits until the code's thread has read it."""
+    waiting: deque[tuple[bytes, bytes]] = deque(maxlen=EVENTS)
+    stamps, newest = StampReader(), 0
+
+    def take() -> None:
+        nonlocal newest
+        if waiting:
+            payload, attachment = waiting.popleft()
+            _, stamp = stamps.read(attachment)
+            if stamp.sequence > newest:
+                newest = stamp.sequence
+                signal = Signal(read(payload), stamp.component, stamp.time, stamp.sequence, stamp.encoding.media)
+                end.received(signal.sequence)
+
+    def call(sample: zenoh.Sample) -> None:
+        attachment = sample.attachment
+        if attachment is not None:
+            waiting.append((sample.payload.to_bytes(), attachment.to_bytes()))
+            code.signal(take)
+
+    return call
+
+
 def reader(end: SinkEnd, read: Callable[[bytes], Any]) -> Callable[[zenoh.Sample], None]:
     """What Zenoh is to call for a signal; it does so on a thread for the subscription."""
 
@@ -168,4 +233,4 @@ def reader(end: SinkEnd, read: Callable[[bytes], Any]) -> Callable[[zenoh.Sample
 
 
 if __name__ == "__main__":
-    {"selfconf": selfconf_end, "bare": bare_end}[sys.argv[1]](*sys.argv[2:])
+    {"selfconf": selfconf_end, "bare": bare_end, "least": least_end}[sys.argv[1]](*sys.argv[2:])

@@ -32,7 +32,7 @@ class StampWriter:
     def __init__(self, component: IRI, life: str) -> None:
         self._component, self._life = component, life
         self._of: tuple[bool, SignalEncoding] | None = None
-        self._beginning = ""
+        self._beginning = b""
         """The beginning of the stamps of such signals."""
 
     def write(self, sequence: int, time: float, raw: bool = False, encoding: SignalEncoding = PLAIN) -> bytes:
@@ -41,8 +41,8 @@ class StampWriter:
             self._of = raw, encoding
             stamp = encode(Stamp(self._component, self._life, 0, 0.0, encoding))
             body = {name: member for name, member in json.loads(stamp).items() if name not in _LAST and member != {}}
-            self._beginning = (RAW if raw else b"").decode() + _JSON.encode(body).removesuffix("}")
-        return f'{self._beginning},"sequence":{sequence},"time":{float(time)!r}}}'.encode()
+            self._beginning = (RAW if raw else b"") + _JSON.encode(body).removesuffix("}").encode() + b","
+        return self._beginning + orjson.dumps({"sequence": sequence, "time": float(time)})[1:]
 
 
 class StampReader:
@@ -60,7 +60,8 @@ class StampReader:
         last = _number_and_time(end)
         known, raw, said = self._known
         if last is not None and beginning == known:
-            return raw, Stamp(said.component, said.life, *last, said.encoding)
+            number, time = last
+            return raw, Stamp(said.component, said.life, number, time, said.encoding)
         raw = attachment.startswith(RAW)
         stamp = decode(attachment[len(RAW) :] if raw else attachment, Stamp)
         if last is not None:

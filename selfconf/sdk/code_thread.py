@@ -56,7 +56,8 @@ class CodeThread:
     def __init__(self, inline: bool) -> None:
         """`inline`: everything is run at once by the thread that hands it over; there is no other."""
         self.inline = inline
-        self.running: RunningCode | None = None
+        self._running: tuple[object, str, float, float] | None = None
+        """What `running` says; that is put in words only where it is asked for, not for each signal."""
         self._rests: deque[float] = deque()
         """Since when each component that is to come to rest is to do so, by the monotonic clock."""
         self._calls: deque[Action] = deque()
@@ -103,11 +104,17 @@ class CodeThread:
 
     def limited(self, owner: object, what: str, limit: float, action: Callable[[], _Result]) -> _Result:
         """Return what code of a component returns that may take so many seconds; `overdue` sees it meanwhile."""
-        before, self.running = self.running, RunningCode(owner, what, time.monotonic(), limit)
+        before, self._running = self._running, (owner, what, time.monotonic(), limit)
         try:
             return action()
         finally:
-            self.running = before
+            self._running = before
+
+    @property
+    def running(self) -> RunningCode | None:
+        """The code that runs now."""
+        running = self._running
+        return None if running is None else RunningCode(*running)
 
     def overdue(self, since: float = -math.inf) -> RunningCode | None:
         """The code that runs for longer than it may, by a time from which on that counts.

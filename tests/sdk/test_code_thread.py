@@ -126,7 +126,7 @@ def test_code_that_has_not_returned_in_its_time_is_seen_by_another_thread_and_on
     overdue = code.overdue()
     assert overdue is not None
     assert (overdue.owner, overdue.what, overdue.limit) == ("me", "received", 0.0)
-    assert code.overdue() is overdue
+    assert code.overdue() == overdue
     end.set()
     thread.join(5.0)
     assert code.overdue() is None

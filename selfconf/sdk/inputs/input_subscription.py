@@ -20,7 +20,7 @@ from selfconf.sdk.code_thread import CodeThread
 from selfconf.sdk.component import Signal
 from selfconf.sdk.inputs.followed_output import FollowedOutput
 from selfconf.sdk.inputs.last_signal import LastSignal
-from selfconf.sdk.inputs.signal_order import NONE, SignalNumber
+from selfconf.sdk.inputs.signal_order import NONE
 from selfconf.sdk.inputs.signal_queue import SignalQueue
 from selfconf.sdk.inputs.silence_watch import SilenceWatch
 from selfconf.sdk.inputs.source_watch import SourceWatch
@@ -146,7 +146,7 @@ class InputSubscription:
             return  # muted or lost while it was read
         if lost and stamp.life not in output.lives:  # on its way when that life ended, or its source is cut off
             self._source.expect_sign()
-        output.order.newest, output.lost = SignalNumber(stamp.life, stamp.sequence), False
+        output.order.newest, output.lost = stamp, False
         self._deliver(Signal(value, stamp.component, stamp.time, stamp.sequence, stamp.encoding.media))
 
     def _be_silent(self, seconds: float) -> None:

@@ -24,7 +24,11 @@ class SignalNumber(NamedTuple):
 
     def covers(self, stamp: Stamp | SignalNumber) -> bool:
         """Whether a signal is this one, or was issued before it by the same life."""
-        return stamp.life == self.life and 0 <= self.sequence - stamp.sequence < LATE
+        return _covers(self, stamp)
+
+
+def _covers(last: Stamp | SignalNumber, stamp: Stamp | SignalNumber) -> bool:
+    return stamp.life == last.life and 0 <= last.sequence - stamp.sequence < LATE
 
 
 NONE = SignalNumber("", 0)
@@ -35,8 +39,8 @@ class SignalOrder:
     """What an input knows of the order of an output's signals; several threads read it, and write a number at once."""
 
     def __init__(self) -> None:
-        self.newest = NONE
-        """The newest signal that was delivered."""
+        self.newest: Stamp | SignalNumber = NONE
+        """The newest signal that was delivered, by its stamp as it was read."""
         self.over = NONE
         """The last signal of a source that has failed since, or has let go of its task: what comes late of those up to
         that is no sign that it issues, and the input stays unfed."""
@@ -74,4 +78,4 @@ class SignalOrder:
         """
         if lost and (self.is_over(stamp) or (stamp.life, stamp.sequence) == self.said_again):
             return self.is_over(stamp)
-        return self.newest.covers(stamp)
+        return _covers(self.newest, stamp)

@@ -32,12 +32,15 @@ class SignalQueue:
 
     def append(self, sample: Sample) -> bool:
         """Let a signal wait, and drive out the oldest if these are too many; whether none was."""
+        waiting = self._waiting
         with self._lock:
-            self._waiting.append(sample)
-            self._bytes += _size(sample)
+            waiting.append(sample)
+            self._bytes += len(sample.payload) + len(sample.attachment)
+            if len(waiting) <= self._depth and self._bytes <= self._most_bytes:
+                return True
             dropped = 0
-            while len(self._waiting) > self._depth or self._is_too_big():
-                self._bytes -= _size(self._waiting.popleft())
+            while len(waiting) > self._depth or (self._bytes > self._most_bytes and len(waiting) > 1):
+                self._bytes -= _size(waiting.popleft())
                 dropped += 1
             self.dropped += dropped
             return not dropped
@@ -48,7 +51,7 @@ class SignalQueue:
             if not self._waiting:
                 return None
             sample = self._waiting.popleft()
-            self._bytes -= _size(sample)
+            self._bytes -= len(sample.payload) + len(sample.attachment)
             return sample
 
     def newest(self) -> Sample | None:
@@ -61,9 +64,6 @@ class SignalQueue:
         with self._lock:
             while len(self._waiting) > newest:
                 self._bytes -= _size(self._waiting.popleft())
-
-    def _is_too_big(self) -> bool:
-        return self._bytes > self._most_bytes and len(self._waiting) > 1
 
 
 def _size(sample: Sample) -> int:
