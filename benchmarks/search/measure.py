@@ -20,6 +20,7 @@ from benchmarks.search.engines import ENGINES, SMALL
 from benchmarks.search.families import scaling as f
 from benchmarks.search.families.coverage import cover
 from benchmarks.search.first import First
+from selfconf.model.profile import Input, Output
 from selfconf.search.problem import Problem
 
 Engine = Callable[[Problem], First]
@@ -121,5 +122,7 @@ def _own(problem: Problem) -> None:
     for candidates in problem.candidates:
         for candidate in candidates:
             profile = candidate.profile
-            for port in (*profile.inputs, *profile.outputs):
-                _ = [candidate.admits, *port]
+            _ = [profile.component, profile.ports, *candidate.admits]
+            ports: list[Input | Output] = [*profile.inputs, *profile.outputs]
+            for port in ports:
+                _ = [*port, *port.signals]

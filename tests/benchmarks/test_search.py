@@ -6,11 +6,13 @@ from dataclasses import replace
 
 import pytest
 
-from benchmarks.search import first, sparql
+from benchmarks.search import first, measure, sparql
 from benchmarks.search.engines import installed
 from benchmarks.search.families import scaling, wiring
 from benchmarks.search.measure import Measured
 from benchmarks.search.report import Row, exponents, page, verdict
+from selfconf.model.partition import Candidate
+from selfconf.model.profile import Input, Output, Ports, Profile
 from selfconf.model.term import IRI
 from selfconf.search.problem import Problem
 from tests.benchmarks.short_run import short_run
@@ -29,6 +31,22 @@ def test_rdflib_answers_the_same_query(solvable: bool) -> None:
     assert sparql.rdflib_graph(scaling.navigation(3, 1, solvable)) is solvable
     assert sparql.oxigraph(scaling.navigation(3, 1, solvable)) is solvable
     assert sparql.oxigraph(scaling.fleet(3, 4, 1))
+
+
+def test_types_of_signals_and_masks_of_values_are_touched_before_the_time_of_an_engine_begins() -> None:
+    touched: list[object] = []
+
+    class Watched(tuple):
+        def __iter__(self):
+            touched.append(self)
+            return super().__iter__()
+
+    wanted, issued, masks = Watched([wiring.iri("a")]), Watched([wiring.iri("b")]), Watched([1])
+    ports = Ports((Input("in", wanted),), (Output("out", issued),))
+    problem = wiring.made([[Candidate(Profile(wiring.iri("c"), ports=ports), masks)]], [])
+    touched.clear()
+    measure._own(problem)
+    assert [id(one) for one in touched] == [id(masks), id(wanted), id(issued)]
 
 
 PROBLEMS = {
