@@ -18,14 +18,16 @@ import uvicorn
 from starlette.types import ASGIApp
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
+from selfconf.serve.application import HEADERS
+from selfconf.serve.problems import problem
+
 REQUEST_SECONDS = 15.0
 """Seconds from the opening of a connection, or the first byte of a further request, to the last byte of the request."""
 UNREAD_SECONDS = 30.0
 """Seconds for which an answer waits that is not taken, beyond the buffers of 64 KiB here and those of the system."""
 MOST_CONNECTIONS = 400
 """Connections at a time; a browser has up to six, one of them for the stream of events."""
-
-
+NO_REQUEST = "this is no request of HTTP/1.1, or its head has more than 64 KiB; send a long query by POST"
 REFUSED_AGAIN = 60.0
 """Seconds after which it is said again that the system lets no connection be taken."""
 
@@ -95,6 +97,17 @@ class BoundedConnection(H11Protocol):
         self._wait_no_more()
         self._taken()
         super().connection_lost(exc)
+
+    def send_400_response(self, msg: str) -> None:
+        """Say that what has come is no request, as all other answers are worded; uvicorn has plain text for it."""
+        answer = problem(400, NO_REQUEST, {**HEADERS, "Connection": "close"})
+        for event in (
+            h11.Response(status_code=answer.status_code, headers=answer.raw_headers),
+            h11.Data(data=bytes(answer.body)),
+            h11.EndOfMessage(),
+        ):
+            self.transport.write(self.conn.send(event))
+        self.transport.close()
 
     def hang_up(self) -> None:
         """End the connection: what serves it receives `http.disconnect`."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import errno
+import json
 import socket
 import threading
 import time
@@ -102,6 +103,22 @@ def test_a_request_that_does_not_arrive_in_time_is_not_waited_for(sent: bytes, p
     with connected(place) as link:
         link.sendall(sent)
         assert closed(link)
+
+
+@pytest.mark.parametrize(
+    "sent", [b"nonsense\r\n\r\n", b"GET /x HTTP/1.1\r\n\r\n", b"GET /" + b"x" * (1 << 16)], ids=["text", "host", "long"]
+)
+def test_what_is_no_request_is_answered_like_all_else(sent: bytes, place: tuple[str, int]) -> None:
+    with connected(place) as link:
+        link.sendall(sent)
+        said = b""
+        while not said.endswith(b"}") and (more := link.recv(10_000)):
+            said += more
+    head, _, body = said.partition(b"\r\n\r\n")
+    assert head.startswith(b"HTTP/1.1 400 ")
+    assert b"content-type: application/problem+json" in head.lower()
+    assert b"content-security-policy: default-src 'none';" in head.lower()
+    assert json.loads(body)["detail"] == connections.NO_REQUEST
 
 
 def test_a_further_request_of_a_connection_is_waited_for_no_longer_than_the_first(place: tuple[str, int]) -> None:
