@@ -47,17 +47,16 @@ def heed_failure(state: State, event: Failed) -> Reaction:
 def _ended_since(state: State, event: Failed) -> State:
     """Note that the life has ended in which a component was lost, at that moment or since.
 
-    Its site can start it again. What was silent may only have been cut off, whatever its site says, and be back in
-    that life.
+    Its site can start it again. Where no site is seen that can, what was silent may only have been cut off.
     """
     loss = state.lost.get(event.component)
     if loss is None or event.cause is not Cause.CRASH:
         return state
     in_that_life = loss.lasts and loss.life == event.life
-    if in_that_life and loss.cause is Cause.SILENCE:
-        known = replace(loss, cause=Cause.CRASH, detail=event.detail, startable=event.startable)
-    elif event.startable and (loss.cause is Cause.CRASH or in_that_life):
+    if event.startable and (loss.cause is Cause.CRASH or in_that_life):
         known = replace(loss, startable=True)
+    elif in_that_life and loss.cause is Cause.SILENCE:
+        known = replace(loss, cause=Cause.CRASH, detail=event.detail)
     else:
         return state
     return replace(state, lost={**state.lost, event.component: known})

@@ -152,11 +152,13 @@ def _appeared(state: State, event: Appeared) -> Reaction:
 def _stays_lost(component: IRI, loss: Loss, lives: Mapping[IRI, str]) -> bool:
     """Whether a loss is not disproved by what has appeared: lives by component, or, without any, a site.
 
-    A life without a name is no life in which something was lost.
+    A life without a name is no life in which something was lost. What was silent was cut off if its life has seemed to
+    end and goes on.
     """
     if component not in lives:
         return loss.answered or bool(lives)
-    return loss.cause is not Cause.CRASH and loss.answered and lives[component] == loss.life != ""
+    cut_off = loss.cause is Cause.CRASH or (loss.cause is Cause.SILENCE and loss.startable)
+    return not cut_off and loss.answered and lives[component] == loss.life != ""
 
 
 def _rewired(state: State, component: IRI, rests: bool) -> Reaction:
