@@ -62,7 +62,6 @@ TASK = template(NAVIGATE).bind(robot=":Astrid", goal="x")
         "http://0.0.0.0/query",
         "http://localhost.example.org/query",
         "http://127.0.0.1.example.org/query",
-        "http://127.0.0.1@example.org/query",
         "http://example.org/127.0.0.1",
         "http://example.org?localhost",
         "http:///query",
@@ -79,6 +78,11 @@ def test_what_could_be_changed_on_its_way_is_not_asked(url: str) -> None:
         endpoint_files(EndpointEcology(url), TASK, Method()),
     ):
         pytest.fail("there are no files")
+
+
+def test_a_user_name_that_looks_like_this_machine_is_refused() -> None:
+    with pytest.raises(AuthorError, match=r"^the URL of example\.org has a user name or a password in it"):
+        EndpointEcology("http://127.0.0.1@example.org/query")
 
 
 @pytest.mark.parametrize(
