@@ -17,7 +17,7 @@ from selfconf.rdf.permitted_fields import LISTS_OF_SHAPES, SHAPE_VALUED
 from selfconf.rdf.shacl.patterns import pattern_fault
 from selfconf.rdf.shacl.shape_queries import refused_queries
 from selfconf.rdf.turtle import Document, Node, Triple
-from selfconf.rdf.vocabulary import FIRST, NIL, SH, XSD
+from selfconf.rdf.vocabulary import FIRST, NIL, RDFS, SH, XSD
 
 
 def _terms(*names: str) -> frozenset[IRI]:
@@ -236,7 +236,11 @@ def _paths(document: Document, head: Term, depth: int) -> bool:
 def _validators(document: Document) -> dict[IRI, list[Term]]:
     """What holds the queries of the document's own SPARQL-based constraint components, by the predicates of these."""
     found: dict[IRI, list[Term]] = {}
-    for component in document.instances(SH.ConstraintComponent):
+    kinds = [SH.ConstraintComponent]
+    for kind in kinds:  # which grows on the way: instances of a class below it count, too (SHACL, 6.2 and 1.1)
+        below = (subject for subject, said in document.statements.items() if (RDFS.subClassOf, kind) in said)
+        kinds += [one for one in below if isinstance(one, IRI) and one not in kinds]
+    for component in (one for kind in kinds for one in document.instances(kind)):
         holding = [one for predicate in VALIDATORS for one in document.values(component, predicate)]
         for parameter in document.values(component, SH.parameter):
             for path in document.values(parameter, SH.path):

@@ -32,6 +32,7 @@ from tests.lab import PREFIXES, iri
         ("sh:or ( )", "or"),
         ("sh:languageIn ( :en )", "languageIn"),
         ("sh:languageIn ( 'en' 5 )", "languageIn"),
+        ("sh:languageIn ( 'de_AT' )", "languageIn"),
         ("sh:ignoredProperties ( :a 5 )", "ignoredProperties"),
         ("sh:node 'x'", "node"),
         ("sh:node [ sh:path :p ]", "node"),
@@ -133,8 +134,10 @@ def test_the_paths_of_the_parameters_of_all_components_are_found() -> None:
         :One a sh:ConstraintComponent ; sh:parameter [ sh:path :low ] , [ sh:path :high ; sh:optional true ] .
         :Two a sh:ConstraintComponent ; sh:parameter [ sh:path _:odd ] .
         :other sh:parameter [ sh:path :nothing ] .
+        :Own rdfs:subClassOf :Below . :Below rdfs:subClassOf sh:ConstraintComponent , :Own .
+        :Three a :Own ; sh:parameter [ sh:path :own ] .
     """
-    assert component_parameters(parse(PREFIXES + text, "shapes.ttl")) == {iri("low"), iri("high")}
+    assert component_parameters(parse(PREFIXES + text, "shapes.ttl")) == {iri("low"), iri("high"), iri("own")}
 
 
 def test_a_statement_leads_to_its_value_or_to_the_members_of_a_list_of_shapes() -> None:

@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from functools import cached_property
 
-from rdflib import RDF, SH, Graph, Literal, URIRef
+from rdflib import RDF, RDFS, SH, Graph, Literal, URIRef
 from rdflib.term import Node
 
 from selfconf.rdf.vocabulary import SC
@@ -50,7 +50,9 @@ class ShapeSource:
         self.parameters = frozenset(self.subjects(RDF.type, URIRef(SC.Parameter)))
         self.constraints = frozenset(
             path
-            for component in self.subjects(RDF.type, SH.ConstraintComponent)
+            for graph in graphs
+            for kind in graph.transitive_subjects(RDFS.subClassOf, SH.ConstraintComponent)
+            for component in (self.subjects(RDF.type, kind) if kind is not None else ())
             for parameter in self.values(component, SH.parameter)
             for path in self.values(parameter, SH.path)
         )
