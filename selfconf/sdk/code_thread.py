@@ -2,9 +2,8 @@
 
 What a component does with a signal may take its time; a call of a configurator, or the end of its life, may not wait
 for that. So the bus has a thread of its own, and hands to the code's thread what is to be done there: calls before
-signals, calls in their order, signals in the order in which their queues have begun to wait; what is to be done at
-intervals waits as a signal does. A queue of signals is bounded, so a slow component costs neither memory nor
-supervision.
+signals, calls in their order, signals in the order in which their queues have begun to wait, in turns with what is to
+be done at intervals. A queue of signals is bounded, so a slow component costs neither memory nor supervision.
 
 `CodeThread.overdue` is for the bus's thread: it names the code that has not returned within its deadline, without any
 help of that code. While a component is to come to rest, no code may take longer than a site would wait for that,
@@ -62,6 +61,10 @@ class CodeThread:
         """Since when each component that is to come to rest is to do so, by the monotonic clock."""
         self._calls: deque[Action] = deque()
         self._signals: deque[Action] = deque()
+        self._ticks: deque[Action] = deque()
+        """What is to be done at intervals, and is due."""
+        self._tick_was_last = False
+        """Whether of signals and ticks, while both wait, a tick had the last turn."""
         self._in_rush = False
         """Whether the last action did not have to be waited for, or not for long."""
         self._asleep = False
@@ -86,8 +89,12 @@ class CodeThread:
         self.call(rest)
 
     def signal(self, action: Action) -> None:
-        """Run what a signal or a timer asks for. May be called from any thread."""
+        """Run what a signal asks for. May be called from any thread."""
         self._put(self._signals, action)
+
+    def tick(self, action: Action) -> None:
+        """Run what is to be done at intervals after one signal at most, however many wait, and before the next."""
+        self._put(self._ticks, action)
 
     def _put(self, actions: deque[Action], action: Action) -> None:
         if self.inline:
@@ -144,7 +151,7 @@ class CodeThread:
 
         Signals that come while these run wait for the next time: those that go in a circle would have no end.
         """
-        action, left = self._next(seconds), len(self._signals)
+        action, left = self._next(seconds), len(self._signals) + len(self._ticks)
         while action is not None:
             action()
             if not self._calls:
@@ -162,7 +169,7 @@ class CodeThread:
 
     def _next(self, seconds: float) -> Action | None:
         """What is next, waited for so long; None if there is nothing, or the thread was woken."""
-        if self._calls or self._signals:
+        if self._calls or self._signals or self._ticks:
             self._in_rush = True
         elif seconds > 0:
             if self._in_rush:
@@ -170,14 +177,19 @@ class CodeThread:
             began = time.monotonic()
             self._wait(seconds)
             self._in_rush = time.monotonic() - began < RUSH
-        actions = self._calls or self._signals
+        actions = self._calls or (self._in_turns() if self._ticks else self._signals)
         return actions.popleft() if actions else None
+
+    def _in_turns(self) -> deque[Action]:
+        """What comes next of ticks and signals, of which some wait: neither waits for all of the other."""
+        self._tick_was_last = not (self._tick_was_last and self._signals)
+        return self._ticks if self._tick_was_last else self._signals
 
     def _wait(self, seconds: float) -> None:
         """Wait until there is an action, or the thread is woken; not longer than that."""
         self._asleep = True
         try:
-            if not (self._calls or self._signals):
+            if not (self._calls or self._signals or self._ticks):
                 self._woken.get(timeout=seconds)
         except queue.Empty:
             pass

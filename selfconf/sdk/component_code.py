@@ -189,7 +189,7 @@ class ComponentCode:
 
     def tick(self, action: Callable[[], None]) -> None:
         """Run what the component wants done at intervals; in turns with signals, which else would never be read."""
-        self._thread.signal(lambda: None if self._resting else self._guarded("every", action))
+        self._thread.tick(lambda: None if self._resting else self._guarded("every", action))
 
     def deliver(self, port: str, signal: Signal) -> None:
         """Hand a signal to the component; called on the thread of its code."""

@@ -39,6 +39,31 @@ def test_a_call_that_comes_while_signals_run_is_next() -> None:
     assert ran == ["first", "call", "second"]
 
 
+def test_what_is_due_at_intervals_does_not_wait_for_all_signals_nor_these_for_it() -> None:
+    ran = ""
+    code = CodeThread(inline=False)
+
+    def run(what: str) -> None:
+        nonlocal ran
+        ran += what
+
+    def due(times: int) -> None:
+        run("t")
+        if times > 1:
+            code.tick(lambda: due(times - 1))
+
+    for _ in range(6):
+        code.signal(lambda: run("s"))
+    code.tick(lambda: due(4))
+    code.poll()
+    assert ran == "tststst"
+    code.poll()
+    assert ran == "tststst" + "sss"
+    code.tick(lambda: run("t"))
+    code.poll()
+    assert ran == "tststst" + "sss" + "t"
+
+
 def test_a_poll_runs_what_waits_and_not_what_that_hands_over_again() -> None:
     thread, ran = CodeThread(inline=False), list[str]()
 
