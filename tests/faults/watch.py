@@ -36,7 +36,8 @@ _TURNING = (("started",), ("stopped",))
 """What components write down that decides whether they are on."""
 _STATE = attrgetter("state")
 _ACTIVATION = attrgetter("activation")
-_TURNS = attrgetter("turn", "_acting_turn")  # by these it is decided whether code acts
+_TURN, _ACTING_TURN = attrgetter("turn"), attrgetter("_acting_turn")  # by these it is decided whether code acts
+_LIMIT = attrgetter("limit_until")
 CONNECTED = "who calls is connected"
 TRIES_FIRST = "a composite tries first"
 NOTED = (CONNECTED, TRIES_FIRST, *upgrades.NOTED)
@@ -220,17 +221,21 @@ class Watch:
             self._said = [life.recorder.said for life in self._lives]
             self._lengths = list(map(len, self._said))
             self._seen.clear()
-        insides = list(history.insides())
         now = network.time
         seen: list[object] = [
-            list(map(_STATE, history.agents)),
-            list(map(_ACTIVATION, self._runtimes)),
-            list(map(_TURNS, self._codes)),
-            # Few threads have a limit that is over; of those it matters whether they hang.
-            [(thread, thread.hangs) for thread in self._threads if thread.limit_until < now],
-            [(one.runtime.activation, _TURNS(one.runtime.code), one.runner and one.runner.state) for one in insides],
             len(network._events) > MOST_WAITING,
+            *map(_ACTIVATION, self._runtimes),
+            *map(_TURN, self._codes),
+            *map(_ACTING_TURN, self._codes),
+            *map(_STATE, history.agents),
         ]
+        if min(map(_LIMIT, self._threads), default=math.inf) < now:
+            # Few threads have a limit that is over; of those it matters whether they hang.
+            seen += [(thread, thread.hangs) for thread in self._threads if thread.limit_until < now]
+        if history.script.ecology.composites:
+            for one in history.insides():
+                code = one.runtime.code
+                seen.append((one.runtime.activation, code.turn, code._acting_turn, one.runner and one.runner.state))
         changed = seen != self._seen
         self._seen = seen
         return changed
