@@ -10,7 +10,8 @@ Seven processes on one machine: a router, and a source and a sink of each of thr
                 life, number and time, and is issued in the order of the numbers; it is read on another thread than
                 Zenoh's, so that slow code holds nothing up, from a bounded queue, and is not delivered twice
 
-All pairs go through the router, with the same quality of service, and take turns.
+All pairs go through the router, with the same quality of service, and take turns. What `least` does not reach, cannot
+be reached in Python with these promises, as far as is known.
 
     signals/s   that arrive while the source issues them as fast as it can, the median of all rounds
     ms          from just before `emit` to the sink's code, at 100 Hz (from 1 MB on at 30 Hz)
@@ -290,9 +291,11 @@ def report(found: Found) -> str:
 def verdict(rows: Sequence[Sequence[str]]) -> str:
     """Where the goals are met: at least 0.9 of the rate of bare Zenoh, at most 1.3 times its median latency."""
     slow = [f"{row[0]} of {row[1]} ({row[5]})" for row in rows if float(row[5]) < 0.9]
+    least = [f"{row[0]} of {row[1]} ({row[6]})" for row in rows if float(row[6]) < 0.9]
     late = [f"{row[0]} of {row[1]} ({row[10]})" for row in rows if float(row[10]) > 1.3]
     return (
         f"Less than 0.9 of the rate: {', '.join(slow) or 'nowhere'}. "
+        f"`least` has less than 0.9 of it at: {', '.join(least) or 'nowhere'}. "
         f"More than 1.3 times the median latency: {', '.join(late) or 'nowhere'}."
     )
 
