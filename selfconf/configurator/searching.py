@@ -58,9 +58,10 @@ def _avoid(state: State, configuration: Configuration) -> tuple[State, Avoided]:
     return replace(state, taken={**state.taken, **taken}), avoided
 
 
-def _avoided_in_vain(state: State) -> State:
-    """Count as taken the shared components without whose sources there is no configuration."""
-    return replace(state, taken={**state.taken, **avoided_in_vain(state.avoided, state.sharers)})
+def _avoided_in_vain(state: State, event: Composed) -> tuple[State, Avoided]:
+    """Count as taken the shared components without whose sources there is no configuration; what else to avoid."""
+    taken, avoided = avoided_in_vain(state.avoided, event.outcome, state.sharers)
+    return replace(state, taken={**state.taken, **taken}), avoided
 
 
 def heed_outcome(state: State, event: Composed) -> Reaction:
@@ -79,7 +80,7 @@ def heed_outcome(state: State, event: Composed) -> Reaction:
             return phases.compose(fewer, avoided=avoided)
         return _found(replace(state, target=event.outcome, plan=event.plan))
     if state.avoided:
-        return phases.compose(_avoided_in_vain(state))
+        return phases.compose(*_avoided_in_vain(state, event))
     if any(loss.startable for loss in state.lost.values()):
         return phases.compose(replace(state, lost={c: loss for c, loss in state.lost.items() if not loss.startable}))
     return _found_nothing(replace(state, refusal=event.outcome))
@@ -154,7 +155,7 @@ def _improved(state: State, event: Composed) -> Reaction:
     better = event.outcome
     assert state.target is not None
     if not isinstance(better, Configuration):
-        return _improve(_avoided_in_vain(state)) if state.avoided else (state, ())
+        return _improve(*_avoided_in_vain(state, event)) if state.avoided else (state, ())
     if (better.assignments, better.recruits) == (state.target.assignments, state.target.recruits):
         return state, ()
     if state.contested(better):

@@ -12,8 +12,8 @@ from selfconf.model.configuration import Assignment, Configuration, Connection
 from selfconf.model.holder import Holder
 from selfconf.model.immutable import replace
 from selfconf.model.partition import Barred
-from selfconf.model.refusal import Refusal
-from selfconf.model.sharing import MOST_AVOIDED, agreed, avoid, contested_by
+from selfconf.model.refusal import Refusal, TooFewDistinct, TooFewEligible
+from selfconf.model.sharing import MOST_AVOIDED, SharedInput, agreed, avoid, avoided_in_vain, contested_by
 from selfconf.model.term import IRI
 
 CAMERAS = tuple(IRI(f"urn:c:camera{number}") for number in range(4))
@@ -78,7 +78,7 @@ def test_a_source_is_avoided_only_where_it_would_feed_the_shared_component() -> 
 def test_a_recruit_is_avoided_as_a_recruit() -> None:
     recruited = replace(watching(CAMERAS[0], TRACKERS[0]), assignments=(), recruits=(CAMERAS[0],))
     sharers = holders((1, None, None))
-    assert avoid(sharers, recruited, {}) == ({}, {(None, CAMERAS[0]): TRACKERS[0]})
+    assert avoid(sharers, recruited, {}) == ({}, {(None, CAMERAS[0]): SharedInput(TRACKERS[0], None)})
 
 
 def test_a_component_is_taken_after_so_many_sources_were_avoided_for_it() -> None:
@@ -102,3 +102,22 @@ def test_a_component_of_which_others_want_other_values_alone_is_taken_at_once() 
     wants = configuration.wants(TRACKERS[0])
     holder = Holder("other~1", wants=type(wants)(wants.inputs, frozenset({("mode", IRI("urn:fast"))})))
     assert avoid({TRACKERS[0]: holder}, configuration, {}) == ({TRACKERS[0]: holder}, {})
+
+
+def test_of_several_shared_components_the_reasons_say_for_which_sources_were_avoided_in_vain() -> None:
+    eye, screen = IRI("urn:r:eye"), IRI("urn:r:screen")
+    for_tracker, for_wall = SharedInput(TRACKERS[0], eye), SharedInput(TRACKERS[1], screen)
+    avoided = {(0, CAMERAS[0]): for_tracker, (0, CAMERAS[1]): for_tracker, (1, CAMERAS[2]): for_wall}
+    sharers = {tracker: Holder(f"of {tracker}") for tracker in TRACKERS}
+    tracker, wall = ({one: sharers[one]} for one in TRACKERS[:2])
+
+    def after(*reasons: TooFewEligible | TooFewDistinct) -> object:
+        return avoided_in_vain(avoided, Refusal(IRI("urn:t:watch"), reasons), sharers)
+
+    assert after(TooFewEligible(eye, 1, 0)) == (tracker, {(1, CAMERAS[2]): for_wall})
+    assert after(TooFewEligible(screen, 1, 0)) == (wall, dict.fromkeys([*avoided][:2], for_tracker))
+    both = tracker | wall, {}
+    assert after(TooFewDistinct((screen, eye), 2, 1)) == both
+    assert after(TooFewEligible(IRI("urn:r:other"), 1, 0)) == both
+    assert after() == both
+    assert avoided_in_vain(avoided, Refusal(IRI("urn:t:watch"), ()), wall) == (wall, {})
