@@ -148,10 +148,7 @@ def bare_end(role: str, endpoint: str) -> None:
     """A program that puts, or subscribes: what is sent is numbered, and read when it comes."""
     session = open_session("client", connect=[endpoint])
     if role == "source":
-        publishers = {
-            form: session.declare_publisher(f"{KEY}/{form}", congestion_control=zenoh.CongestionControl.DROP)
-            for form in OUTPUTS
-        }
+        publishers = _publishers(session, KEY)
 
         def emit(form: str, signal: Any, number: int) -> None:
             payload = orjson.dumps(signal) if form == "JSON" else signal
@@ -167,14 +164,17 @@ def bare_end(role: str, endpoint: str) -> None:
     session.close()
 
 
+def _publishers(session: zenoh.Session, key: str) -> dict[str, zenoh.Publisher]:
+    """What a source puts the signals of each output by."""
+    drop = zenoh.CongestionControl.DROP
+    return {form: session.declare_publisher(f"{key}/{form}", congestion_control=drop) for form in OUTPUTS}
+
+
 def least_end(role: str, endpoint: str) -> None:
     """A program with the least that keeps what is promised of a signal."""
     session = open_session("client", connect=[endpoint])
     if role == "source":
-        publishers = {
-            form: session.declare_publisher(f"{LEAST_KEY}/{form}", congestion_control=zenoh.CongestionControl.DROP)
-            for form in OUTPUTS
-        }
+        publishers = _publishers(session, LEAST_KEY)
         stamps = {form: StampWriter(IRI("urn:signals:least"), "1") for form in OUTPUTS}
         issuing = threading.Lock()
 
