@@ -7,6 +7,7 @@ import json
 import mimetypes
 from collections.abc import Awaitable, Callable, Collection, Mapping
 from importlib.resources import files
+from urllib.parse import unquote
 
 from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
@@ -31,8 +32,11 @@ LOOPBACK = frozenset({"127.0.0.1", "localhost", "[::1]"})
 SPARQL_METHODS = ("GET", "HEAD", "POST")
 """The methods by which the SPARQL endpoint is asked; everything else is asked by the first two alone."""
 NOTHING_THERE = "there is no such page; / is the page, /sparql, /things and /metrics are for programs"
+TWO_LENGTHS = "the request says its length twice, by Transfer-Encoding and by Content-Length; leave out one"
 PIECE = 1 << 16
 """Bytes of an answer that are sent before the client has taken those before, so that what waits for it is no more."""
+ABSOLUTE = b"http://"
+"""What the target of a request begins with that names the host as well."""
 HEADERS = {
     "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:;"
     " connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
@@ -127,6 +131,7 @@ class Guard:
         """One request, whose answer is sent as fast as the client takes it."""
         if scope["type"] != "http":
             return
+        scope = _in_origin_form(scope)
         asked = {name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]}
 
         async def sent(message: Message) -> None:
@@ -148,11 +153,29 @@ class Guard:
         """The answer to a request that does not come any further."""
         host = asked.get("host", "")
         if self._hosts and _without_port(host) not in self._hosts:
-            return problem(421, f"this server is not {host!r}; ask it under the address at which it listens")
+            wrong = f"this server is not {host!r}" if host else "the request names no host"
+            return problem(421, f"{wrong}; ask it under the address at which it listens")
+        if "transfer-encoding" in asked and "content-length" in asked:
+            # A proxy that believes the length would take for the next request what is the body here, or the reverse.
+            return problem(400, TWO_LENGTHS, {"Connection": "close"})
         if refused := self._origins.refusal(asked, scope["path"]):
             return problem(403, refused)
         allowed = self._origins.preflight(scope["method"], asked)
         return None if allowed is None else Response(status_code=204, headers=allowed)
+
+
+def _in_origin_form(scope: Scope) -> Scope:
+    """A request as one for a path of a host, also where the client has named both at once (`GET http://host/path`).
+
+    What it says in the header Host counts for nothing then (RFC 9112, section 3.2.2).
+    """
+    target = bytes(scope.get("raw_path") or b"")
+    if target[: len(ABSOLUTE)].lower() != ABSOLUTE:
+        return scope
+    host, slash, rest = target[len(ABSOLUTE) :].partition(b"/")
+    path = slash + rest or b"/"
+    headers = [(b"host", host), *(one for one in scope["headers"] if one[0] != b"host")]
+    return {**scope, "path": unquote(path.decode("ascii")), "raw_path": path, "headers": headers}
 
 
 def _names_tag(known: str, tag: str) -> bool:

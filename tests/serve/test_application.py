@@ -74,6 +74,31 @@ def test_a_name_of_this_machine_is_answered(board: Board, host: str) -> None:
     assert ask(served(board), "/state", host=host).status == 200
 
 
+@pytest.mark.parametrize("target", ["http://localhost/healthz", "HTTP://127.0.0.1:8000/healthz?x=http://evil.example/"])
+def test_a_target_with_the_host_in_it_is_answered_like_its_path(board: Board, target: str) -> None:
+    for host in ("localhost", "evil.example"):
+        assert ask(served(board), target, host=host).json == {"status": "ok"}, "the header counts for nothing"
+    page = ask(served(board), "http://localhost")
+    assert (page.status, page.media) == (200, "text/html")
+    assert b"<http://localhost:1/sparql>" in ask(served(board), "http://localhost:1/sparql", accept="text/turtle").body
+
+
+@pytest.mark.parametrize("host", ["evil.example", "evil.example@localhost", "localhost@evil.example", ""])
+def test_a_target_with_another_host_in_it_is_refused(board: Board, host: str) -> None:
+    assert ask(served(board), f"http://{host}/healthz").status == 421
+
+
+def test_a_request_that_says_its_length_twice_is_refused_and_its_connection_closed(board: Board) -> None:
+    headers = {"content_length": "6", "transfer_encoding": "chunked", "content_type": "application/sparql-query"}
+    answer = ask(served(board), "/sparql", "POST", b"ASK {}", **headers)
+    assert (answer.status, answer.headers["connection"]) == (400, "close")
+    assert "Content-Length" in answer.json["detail"]
+
+
+def test_a_request_without_a_host_learns_that_it_names_none(board: Board) -> None:
+    assert ask(served(board), "/healthz", host="").json["detail"].startswith("the request names no host;")
+
+
 @pytest.mark.parametrize("method", ["TRACE", "OPTIONS", "PUT", "PATCH", "DELETE", "FOO"])
 def test_a_method_that_is_not_known_is_answered_with_those_that_are(board: Board, method: str) -> None:
     known = {"/sparql": "GET, HEAD, POST", "/sparql/": "GET, HEAD, POST", "/things": "GET, HEAD", "/": "GET, HEAD"}

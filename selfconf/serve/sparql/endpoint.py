@@ -136,7 +136,13 @@ async def _read(line: socket.socket) -> bytes:
 
 
 async def body_of(request: Request) -> bytes:
-    """The body of a request. Raises RequestRefusedError for one that is too large, before it comes where it says so."""
+    """The body of a request.
+
+    Raises RequestRefusedError for one that is compressed, and for one that is too large, before it comes where it says
+    so.
+    """
+    if (coding := request.headers.get("content-encoding", "identity").strip().lower()) not in ("", "identity"):
+        raise RequestRefusedError(415, f"a body is taken as it is, and not in {coding}; leave out Content-Encoding")
     too_large = RequestRefusedError(413, f"the request has more than {LARGEST_REQUEST >> 20} MiB")
     announced = request.headers.get("content-length", "")
     if announced.isascii() and announced.isdigit() and int(announced) > LARGEST_REQUEST:

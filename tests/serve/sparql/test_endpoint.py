@@ -75,6 +75,15 @@ def test_errors_are_problems_with_the_status_of_the_protocol(board: Board, datas
         assert answer.json["detail"]
 
 
+@pytest.mark.parametrize("coding", ["gzip", "br", "identity, gzip", "zstd"])
+def test_a_body_that_is_compressed_is_refused_as_such(board: Board, dataset: StandingDataset, coding: str) -> None:
+    headers = {"content_type": "application/sparql-query", "content_encoding": coding}
+    answer = ask(served(board, dataset), "/sparql", "POST", b"ASK {}", **headers)
+    assert answer.status == 415
+    assert coding in answer.json["detail"]
+    assert ask(served(board, dataset), "/sparql", "POST", b"ASK {}", **headers | {"content_encoding": "identity"}).json
+
+
 def test_a_body_that_is_announced_too_large_is_refused_before_it_comes(board: Board, dataset: StandingDataset) -> None:
     headers = {"content_type": "application/sparql-query", "content_length": str(2 << 20)}
     assert ask(served(board, dataset), "/sparql", "POST", b"ASK {}", **headers).status == 413
