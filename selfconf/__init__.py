@@ -81,4 +81,4 @@ __getattr__ = late_names(__name__, _HOME)
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return sorted((*__all__, *(name for name in globals() if name.startswith("__"))))

@@ -11,7 +11,8 @@
 
 `Reason`, `Obstacle`, `Relaxation`, `Requirement` and `Fault` are unions, whose members are here too. `selfconf` itself
 has the functions, and the types that most programs name. A value is made by the function that answers with it, so a
-program that names no types needs nothing of this module.
+program that names no types needs nothing of this module but `event_body`, which makes of an event of a run the JSON
+that `run --format json` prints for it.
 """
 
 from selfconf.api.answer import Answer
@@ -114,6 +115,7 @@ from selfconf.protocol.messages import Access, Cause, RefusedAttempt, SignalEnco
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import Exclusion
 from selfconf.render import Names
+from selfconf.render.run_events import event_body
 from selfconf.this_machine import LocalSite
 
 __all__ = [
@@ -234,4 +236,5 @@ __all__ = [
     "WrongCount",
     "WrongShareOfValues",
     "WrongType",
+    "event_body",
 ]

@@ -70,6 +70,12 @@ def test_every_name_is_a_type_of_the_library_and_no_second_one() -> None:
     assert values.Answer is Answer
     assert sorted(values.__all__) == values.__all__
     assert set(values.__all__).isdisjoint(sc.__all__)
+    assert [name for name in values.__all__ if isfunction(getattr(values, name))] == ["event_body"]
+
+
+def test_what_a_program_completes_is_what_the_library_says_it_has() -> None:
+    assert [name for name in dir(sc) if not name.startswith("__")] == sorted(sc.__all__)
+    assert {"__doc__", "__file__", "__name__"} <= set(dir(sc))
 
 
 def test_the_events_of_a_run_are_all_there() -> None:

@@ -69,6 +69,8 @@ def test_of_a_component_that_acts_for_no_task_it_is_said_why_nothing_comes(inhab
         assert said == []
         assert program.end() == 0
         living.signals(iri("person-tracker"), "pose", said.append)
+        living.signals(iri("person-tracker"), "pose")
+        assert [*living.complaints] == said
     assert said == ["person-tracker acts for no task now, and says nothing before it does"]
 
 

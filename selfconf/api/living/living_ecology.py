@@ -203,11 +203,16 @@ class LivingEcology(Ecology):
         perhaps = "".join(f"; {complaint}" for complaint in self._complaints)  # it may be at a site that is silent
         raise AuthorError(f"no component {term} is advertised; `selfconf discover` shows those that are{perhaps}")
 
-    def signals(self, component: str, output: str, complain: Callable[[str], None]) -> Iterator[HeardSignal]:
+    def signals(
+        self, component: str, output: str, complain: Callable[[str], None] | None = None
+    ) -> Iterator[HeardSignal]:
         """What an output of a component issues, as it comes, without an end. Raises AuthorError for what is not there.
 
-        `complain` hears of what is no signal, and of what is to be known before the first one.
+        `complain` hears of what is no signal, and of what is to be known before the first one: that the component is
+        dormant, or acts for no task, so that none may come for long. Without it the latest of this is the only one of
+        the `complaints`.
         """
+        complain = self._complained if complain is None else complain
         if self._membership.looks_on_only:
             raise NetworkError("readers hear no signals; that takes keys of conf.NAME")
         found = self.component(component)
@@ -219,6 +224,9 @@ class LivingEcology(Ecology):
         elif self._rests(profile.component):
             complain(f"{profile.component.short} acts for no task now, and says nothing before it does")
         return echo(self._synchronous, partial(follow_output, self._bus, self._view.keys, profile, output), complain)
+
+    def _complained(self, sentence: str) -> None:
+        self._complaints = (sentence,)
 
     def _rests(self, component: IRI) -> bool:
         """Whether a component that lives has answered, and acts for no task."""
