@@ -87,7 +87,7 @@ class TaskDiscovery:
         self._liveness.discovered(discovery)
         self._tell(discovery)
         number = self._asked
-        shared = {component: holder for component, holder in holders.items() if self.shareable(component)}
+        shared = {component: holder for component, holder in holders.items() if self._ecology.is_shareable(component)}
         unseen = any(component not in discovery.found for component in self._state().held)
         held = Discovered({c: holder for c, holder in holders.items() if c not in shared}, shared, unseen)
 
@@ -126,7 +126,3 @@ class TaskDiscovery:
             return not loss.startable
         known = loss.lasts and self._ecology.knows(component_chunk(component))
         return known and not self._ecology.lives_on(component, loss.life)
-
-    def shareable(self, component: IRI) -> bool:
-        found = self._ecology.discovery.found.get(component)
-        return found is not None and found.advertisement.profile.is_shareable

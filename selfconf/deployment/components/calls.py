@@ -6,6 +6,8 @@ in `releases`.
 
 from __future__ import annotations
 
+from functools import partial
+
 from selfconf.bus.port import Replies
 from selfconf.configurator import (
     Appeared,
@@ -78,7 +80,29 @@ class Calls:
     # Reserving.
 
     def reserve(self, effect: ReserveOf) -> None:
-        """Have a component held for this task."""
+        """Have a component held for this task: one that can be shared, once it is known what really feeds it.
+
+        Tasks share a component that is to follow the same outputs for all of them. Behind a composite that acts for
+        another task stand outputs inside, of which this task has not heard.
+        """
+        held = self._state().held
+        shareable = self.ecology.is_shareable(effect.component)
+        feeding = self._ends.feeding(effect.inputs) if shareable else set()
+        unheard = {one for one in feeding if not (one in held and held[one].acts)}
+        if not unheard:
+            self._reserve(effect)
+
+        def seen(composite: IRI, answer: CallAnswer | None) -> None:
+            if answer is not None and answer.active:
+                self._ends.moved(composite, answer.outputs, answer.callers)
+            unheard.discard(composite)
+            if not unheard and effect.epoch == self._state().epoch and not self._state().ended:
+                self._reserve(effect)
+
+        for one in tuple(unheard):
+            self._calling.look(one, partial(seen, one), 1)
+
+    def _reserve(self, effect: ReserveOf) -> None:
         component = effect.component
         if self._fails_as_ended(component, Call.RESERVE):
             return

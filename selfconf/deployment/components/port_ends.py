@@ -37,9 +37,12 @@ class PortEnds:
 
     def unknown(self, connected: Wires, calling: Callers) -> set[IRI]:
         """The composites among those that feed inputs, or call, which have not said yet what stands behind them."""
-        others = {wire.component for some in connected.values() for wire in some}
-        others |= {caller.component for some in calling.values() for caller in some}
-        return {one for one in others - self._issuing.keys() if self.is_composite(one)}
+        calling_composites = {c.component for some in calling.values() for c in some if self.is_composite(c.component)}
+        return (self.feeding(connected) | calling_composites) - self._issuing.keys()
+
+    def feeding(self, connected: Wires) -> set[IRI]:
+        """The composites among those that feed inputs."""
+        return {w.component for some in connected.values() for w in some if self.is_composite(w.component)}
 
     def is_composite(self, component: IRI) -> bool:
         """Whether a component is a task inside, by its advertisement."""

@@ -14,6 +14,8 @@ from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Release
 from selfconf.sdk.runtime.runtime import LIFE_ENDS
 from selfconf.sdk.runtime.supervision import GRACE
+from tests.composites.composite_house import NAVIGATOR, SERVICE, House, lost
+from tests.composites.composite_house import TASK as TASK_OF_HOUSE
 from tests.deployment.simulated import home, living_room, slow_code
 from tests.deployment.tasks import TASK
 from tests.lab import NAVIGATE, Lab, Recorder, iri
@@ -152,3 +154,17 @@ def test_a_task_waits_where_another_configurator_of_it_has_run_it_by_a_clock_tha
         assert [claim.task for claim in lab.runtimes[name].activation.queue.claims] == [agent.identity.task]
     other.stop()
     assert lab.until(lambda: agent.state.phase is Phase.RUNNING, 1.0)
+
+
+def test_a_component_that_a_composite_feeds_is_shared_before_it_was_heard_what_is_inside() -> None:
+    """It comes first in the order of the IRIs, so that it is reserved before the composite."""
+    house = House(navigator=NAVIGATOR.replace(":Nav ;", ":Nav ; sc:shareable true ;"))
+    service = SERVICE.replace(":Positions ;", ":Positions ; sc:shareable true ;")
+    first, second = house.run(service), house.run(task=TASK_OF_HOUSE.replace(":task ", ":other-task "))
+    assert (first.running, second.running) == (True, True)
+    (navigating,) = second.configuration["navigator"]
+    assert navigating in first.configuration.components
+    assert lost(first) == lost(second) == []
+    house.crash("t1")
+    assert (first.running, second.running) == (True, True)
+    assert house.navigator.source == "t2"
