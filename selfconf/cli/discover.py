@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from selfconf.cli.options import add_ecology_arguments, add_format_argument, complain_of, joined
+from selfconf.cli.options import add_ecology_arguments, complain_of, joined
 from selfconf.cli.terminal import display, display_json, styled_state
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ EXAMPLE = """  selfconf discover --format json"""
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of the command."""
-    add_format_argument(parser)
+    parser.add_argument("--format", choices=["table", "json"], default="table", help="default: %(default)s")
     add_ecology_arguments(parser)
 
 

@@ -7,7 +7,7 @@ import sys
 import time
 from typing import TYPE_CHECKING
 
-from selfconf.cli.options import add_ecology_arguments, add_format_argument, complain_of, joined, seconds_option
+from selfconf.cli.options import add_ecology_arguments, complain_of, joined, seconds_option
 from selfconf.cli.terminal import Terminal, complain, display, display_json, styled_state
 from selfconf.errors import NetworkError
 
@@ -28,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="seconds over which rates are taken, and after which a terminal gets a new table (default: %(default)g)",
     )
     parser.add_argument("--once", action="store_true", help="print one table and end, also on a terminal")
-    add_format_argument(parser)
+    parser.add_argument("--format", choices=["table", "json"], default="table", help="default: %(default)s")
     add_ecology_arguments(parser)
 
 
