@@ -322,6 +322,10 @@ class TaskRunner:
             self._step(StayedAway(attempt))
 
     def _finish(self, effect: Finish) -> None:
+        """End, once it is known of what has gone without a word that it is at rest; that takes `GONE` at most."""
+        self._components.await_rest(partial(self._end, effect))
+
+    def _end(self, effect: Finish) -> None:
         refusal, lost, owed = effect.refusal, self.losses, self._components.out_of_control()
         self.reports.note(TaskStopped(lost=lost, owed=owed) if refusal is None else TaskRefused(refusal, lost, owed))
         try:

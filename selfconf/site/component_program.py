@@ -210,6 +210,15 @@ class ComponentProgram:
         with self._launching:
             self._closed = True
 
+    def tell_end(self) -> None:
+        """Say that the process has ended with its site, if it has; after `close`, and also from any thread.
+
+        Only the site knows that for certain: to a task that ends in the same moment what has gone may only be frozen.
+        """
+        process = self._process
+        if process is not None and process.group.code() is not None:
+            self._tell(process, Cause.CRASH, "its process has ended with its site")
+
     def _launch(self) -> None:
         """Start the process. Raises PeerError."""
         self._pause.stop()
@@ -341,9 +350,16 @@ class ComponentProgram:
         return f", for the {self._restarts() + 1}. time within {CRASH_WINDOW:.0f} s; it is not started again"
 
     def _report(self, process: ComponentProcess, cause: Cause, detail: str) -> None:
-        """Raise FAIL for what the process was started for: a configurator may wait for one that has no life yet."""
         self._note(detail)
-        for component in sorted(self._asked):
+        self._tell(process, cause, detail)
+
+    def _tell(self, process: ComponentProcess, cause: Cause, detail: str) -> None:
+        """Raise FAIL for what the process was started for, as a configurator may wait for one that has no life yet.
+
+        So for what else has lived in it.
+        """
+        lived = {one for one in self._profiles if process.last_life(one) == process.life}
+        for component in sorted(self._asked | lived):
             notice = self._bus.publisher(self._keys.fail(component), Urgency.EVENT)
             notice.put(encode(Fail(component, process.last_life(component), 0, cause, detail)))
             notice.undeclare()

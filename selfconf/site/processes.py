@@ -117,8 +117,8 @@ class ComponentProcesses:
     def close(self) -> None:
         """End every process, with all that it has started: what runs after `ENDING` seconds, all in all, is killed.
 
-        Those with actuators come to rest first, before what feeds them. Unlike everything else here it may be called
-        from any thread: the bus may have one of its own.
+        Those with actuators come to rest first, before what feeds them; when all have ended, that is said. Unlike
+        everything else here it may be called from any thread: the bus may have one of its own.
         """
         self._closed = True
         began, groups = time.monotonic(), list[ProcessGroup]()
@@ -138,6 +138,8 @@ class ComponentProcesses:
             if group.frozen() or not group.wait_for_all(max(0.0, began + ENDING - time.monotonic())):
                 group.kill()
                 group.wait(ENDING)
+        for program in programs:
+            program.tell_end()
         if self._printed is not None:
             self._printed.close()
             self._printed = None

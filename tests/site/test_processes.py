@@ -275,3 +275,16 @@ def test_each_end_of_a_process_that_is_started_again_at_once_is_reported_once(
         site.start(SLEEPER)
         assert live(network, lambda number=number: len(fails) > number)
     assert [decode(fail.payload, Fail).detail.split(";")[0].split()[-1] for fail in fails] == ["1", "2", "3"]
+
+
+def test_the_end_of_a_process_is_told_as_its_site_ends(
+    network: Network, tmp_path: Path, sites: Callable[[Path], Site]
+) -> None:
+    """A task that ends in the same moment would not know otherwise whether its component is at rest."""
+    site = sites(dormant(tmp_path / "here", "sleep 60"))
+    told: list[Fail] = []
+    network.node().subscribe(KEYS.any_fail(), lambda sample: told.append(decode(sample.payload, Fail)))
+    site.start(SLEEPER)
+    site.close()
+    assert live(network, lambda: bool(told))
+    assert [(one.component, one.detail) for one in told] == [(SLEEPER, "its process has ended with its site")]

@@ -237,6 +237,10 @@ class Calls:
         self._awaited.discard(effect.component)
         self._releases.release(effect)
 
+    def expect_gone(self, component: IRI) -> None:
+        """A component seems to have ended: if it has no life either when it has turned itself off, it is gone."""
+        self._releases.expect_gone(component)
+
     def woken(self, component: IRI, life: str) -> None:
         """A component lives; perhaps it was frozen and has not been released."""
         self._releases.woken(component, life)

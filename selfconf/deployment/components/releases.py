@@ -77,9 +77,12 @@ class Releases:
                 self._bus.later(CALL, partial(self._release_again, effect))
 
         self._calling.ask(component, message, answered)
+        self.expect_gone(component)
+
+    def expect_gone(self, component: IRI) -> None:
+        """A life that has been gone for longer than its grace acts for no task, unless this node is cut off."""
 
         def gone() -> None:
-            """A life that has been gone for longer than its grace acts for no task, unless this node is cut off."""
             if self._bus.link and not self._lives.lives_on(component):
                 self._lives.gone(component)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 
 from selfconf.bus.port import Urgency
@@ -26,6 +27,7 @@ from selfconf.deployment.components.liveness import Liveness
 from selfconf.deployment.components.living_sites import LivingSites
 from selfconf.deployment.components.port_ends import PortEnds
 from selfconf.deployment.components.reachability import Reachability
+from selfconf.deployment.components.releases import GONE
 from selfconf.deployment.components.waking import Waking
 from selfconf.deployment.notices import AT_LEISURE
 from selfconf.deployment.task_context import TaskContext
@@ -35,6 +37,9 @@ from selfconf.protocol.keys import site_of
 
 ComponentEffect = Watch | Unwatch | WakeUp | ReserveOf | QueueFor | Decline | AwaitRelease | ApplyTo | ReleaseFrom
 """What the machine wants done about one component."""
+
+REST_LOOK = 0.05
+"""Seconds between two looks whether what has gone is known to be at rest, as its task ends."""
 
 
 class TaskComponents:
@@ -61,6 +66,23 @@ class TaskComponents:
         """Look from time to time how they are, for as long as the task goes on."""
         self.audits.go_on()
         self.reachability.pulse()
+
+    def await_rest(self, done: Callable[[], None]) -> None:
+        """Call `done` once each component has obeyed its release, has gone for good, or is beyond reach.
+
+        A site that ends in the same moment as the task tells soon that the processes of its components have ended.
+        """
+        for component in self.out_of_control():
+            self.calls.expect_gone(component)
+        self._look_whether_at_rest(self._bus.now() + GONE + REST_LOOK, done)
+
+    def _look_whether_at_rest(self, until: float, done: Callable[[], None]) -> None:
+        """Wait for what seems to have ended, unless this node is cut off: then it would hear nothing of it."""
+        uncertain, may_hear = self.out_of_control(), self._bus.link and self._bus.now() < until
+        if uncertain and may_hear and not any(map(self.lives.lives_on, uncertain)):
+            self._bus.later(REST_LOOK, partial(self._look_whether_at_rest, until, done))
+        else:
+            done()
 
     def close(self) -> None:
         """Hear nothing of them any more."""

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import pytest
 
+from selfconf.bus.port import Urgency
 from selfconf.configurator import ApplyTo, Phase, ReleaseFrom
 from selfconf.deployment import TaskRunner
+from selfconf.deployment.components.releases import GONE
 from selfconf.deployment.notices import AT_LEISURE
 from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
+from selfconf.protocol.codec import encode
+from selfconf.protocol.messages import Cause, Fail
 from tests.lab import Lab, iri
 
 TRACKER = iri("person-tracker")
@@ -58,3 +62,31 @@ def test_once_all_is_over_nothing_is_heard_of_components(
     lab.runtimes["control"].fail("it is lost")
     lab.let_pass(0.1)
     assert heard == [TRACKER]
+
+
+@pytest.mark.parametrize(
+    ("seconds", "told", "cut_off", "owed"),
+    [
+        pytest.param(GONE, False, False, (), id="without a word"),
+        pytest.param(0.2, True, False, (), id="its site tells that its process has ended"),
+        pytest.param(0.0, False, True, (TRACKER,), id="out of reach"),
+    ],
+)
+def test_what_goes_just_as_its_task_ends_is_out_of_control_only_where_nothing_can_be_heard_of_it(
+    agent: TaskRunner, lab: Lab, seconds: float, told: bool, cut_off: bool, owed: tuple[IRI, ...]
+) -> None:
+    """As on a machine that shuts down, which ends all of its programs at once."""
+    life, began = lab.runtimes["tracker"].life, agent.bus.now()
+    lab.crash("tracker")
+    agent.stop()
+    lab.let_pass(0.1)
+    assert "tracker" not in lab.active()
+    if cut_off:
+        lab.isolate(agent)
+    if told:
+        site = lab.network.node().publisher(lab.keys.fail(TRACKER), Urgency.EVENT)
+        site.put(encode(Fail(TRACKER, life, 0, Cause.CRASH, "its process has ended with its site")))
+    assert lab.until(lambda: bool(lab.ended))
+    (stopped,) = lab.acts("stopped")
+    assert stopped.owed == owed
+    assert agent.bus.now() - began == pytest.approx(seconds, abs=0.3)
