@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from selfconf.bus.memory import Network
+from selfconf.bus.zenoh import ZenohBus
 from selfconf.errors import AuthorError, NetworkError, ProgrammerError, TurtleError
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Reserve
@@ -274,3 +275,25 @@ def test_a_component_that_is_removed_leaves_and_may_come_again(tmp_path: Path) -
     host.add(component)
     assert not host.runtimes[0].closed
     host.close()
+
+
+def test_an_actuator_whose_session_other_code_has_closed_comes_to_rest(living: LivingStage) -> None:
+    class Lamp(Component):
+        def __init__(self) -> None:
+            self.said: list[str] = []
+
+        def started(self) -> None:
+            self.said.append("started")
+
+        def stopped(self) -> None:
+            self.said.append("stopped")
+
+    lamp = living.component(living.advertised(Lamp, ":lamp a sc:Component, :Lamp .")())
+    held = living.call("urn:c:lamp", "reserve", Reserve(1, living.supervisor, "task~1"))
+    assert until(lambda: held)
+    living.apply("urn:c:lamp")
+    assert until(lambda: lamp.said == ["started"])
+    assert lamp._runtime is not None
+    assert isinstance(lamp._runtime.bus, ZenohBus)
+    lamp._runtime.bus._session.close()
+    assert until(lambda: lamp.said == ["started", "stopped"])

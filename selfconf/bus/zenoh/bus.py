@@ -280,7 +280,11 @@ class ZenohBus(Loop):
     def watch(
         self, key: str, changed: Callable[[str, bool], None], *, history: bool = True, many: bool = False
     ) -> Callable[[], None]:
-        """Follow every life under a key, those that are there already first, unless it is without `history`."""
+        """Follow every life under a key, those that are there already first, unless it is without `history`.
+
+        All of them have ended for this bus when other code of the process has closed its session.
+        """
+        seen: set[str] = set()
 
         def change(*lives: tuple[str, bool]) -> None:
             for life in lives:
@@ -292,6 +296,7 @@ class ZenohBus(Loop):
             told = []
             for sample in samples:
                 life, alive = str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT
+                (seen.add if alive else seen.discard)(life)
                 if life in self._roll_calls.doubtful:
                     self._roll_calls.confirm(life, alive, partial(receiver.received, (life, alive)))
                 else:
@@ -299,11 +304,15 @@ class ZenohBus(Loop):
             if told:
                 receiver.received(*told)
 
+        def end() -> None:
+            if self._open and seen:  # Zenoh tells no end of a life then
+                receiver.received(*((life, False) for life in sorted(seen)))
+
         # A channel is looked at ten times a second; a callback for each of thousands would hold Zenoh's thread up.
-        handler: Any = open_channel() if many else each(listen)
+        handler: Any = open_channel() if many else each(listen, end)
         self._roll_calls.knows_many |= many
         declared = self._session.liveliness().declare_subscriber(key, handler, history=history)
-        self._read_aside(handler, declared.handler, listen)
+        self._read_aside(handler, declared.handler, listen, end)
         return receiver.until(self._keep(declared))
 
     def roll_call(self, key: str, seconds: float, done: Callable[[tuple[str, ...]], None]) -> None:

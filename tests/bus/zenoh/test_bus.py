@@ -49,6 +49,23 @@ def test_a_client_that_reads_nothing_of_a_new_link_makes_another_one(
     bus.close()
 
 
+@pytest.mark.parametrize("many", [False, True])
+def test_lives_end_for_a_bus_whose_session_other_code_has_closed(zenoh_router: ZenohBus, top: str, many: bool) -> None:
+    here, there = client([zenoh_router.endpoint]), client([zenoh_router.endpoint])
+    there.announce(f"{top}/live/1")
+    lives: list[tuple[str, bool]] = []
+    undone: list[tuple[str, bool]] = []
+    here.watch(f"{top}/live/*", lambda key, alive: lives.append((key, alive)), many=many)
+    undo = here.watch(f"{top}/live/*", lambda key, alive: undone.append((key, alive)), many=many)
+    assert until(lambda: lives == undone == [(f"{top}/live/1", True)], here)
+    undo()
+    here._session.close()
+    assert until(lambda: lives[1:] == [(f"{top}/live/1", False)], here)
+    assert len(undone) == 1
+    here.close()
+    there.close()
+
+
 def test_a_client_whose_router_is_gone_is_not_linked_and_is_again_when_it_is_back(top: str) -> None:
     first = router()
     bus = client([first.endpoint])
