@@ -8,6 +8,7 @@ the copying is missing from it.
 
 from __future__ import annotations
 
+import math
 import shutil
 import tempfile
 from collections.abc import Iterator, Mapping
@@ -93,17 +94,22 @@ def past_configurations(graphs: Mapping[str, bytes]) -> list[PastConfiguration]:
 def past_why(folder: Path, term: str, at: float | None) -> list[str]:
     """Why components played the roles that a term means, in sentences, at a moment or at the end.
 
-    Raises AuthorError where the folder holds no history.
+    Tasks that were over by then, of which a history has any number, are passed over; where no other has to do with the
+    term, the answer is about the one that was over last. Raises AuthorError where the folder holds no history.
     """
     by_task: dict[tuple[str, str], list[PastConfiguration]] = {}
     for one in past_configurations(past_graphs(folder)):
         by_task.setdefault((one.task, one.configurator), []).append(one)
-    sentences: list[str] = []
+    told: list[tuple[float, list[str]]] = []
     for (task, _), several in sorted(by_task.items(), key=lambda item: item[1][0].generated):
         meant = [one for one in several if at is None or one.generated <= at]
         if meant:
-            sentences += told_why(task, _events(several), iri_or_local_name(term), at, passed_over(meant[-1].body))
-    return sentences
+            said = told_why(task, _events(several), iri_or_local_name(term), at, passed_over(meant[-1].body))
+            ended = several[-1].ended
+            over = math.inf if ended is None or (at is not None and at < ended) else ended
+            told += [(over, said)] if said else []
+    latest = max((over for over, _ in told), default=math.inf)
+    return [sentence for over, said in told if over == latest for sentence in said]
 
 
 def _events(several: list[PastConfiguration]) -> Iterator[Mapping[str, Any]]:

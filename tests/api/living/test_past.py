@@ -107,6 +107,23 @@ def test_what_took_over_after_a_time_without_a_configuration_is_told_with_the_fa
     assert "it took over from tracker: lost at" in past_why(tmp_path, "position", None)[1]
 
 
+def test_tasks_that_were_over_by_then_are_passed_over_but_for_the_last_where_no_other_answers(tmp_path: Path) -> None:
+    clock = Clock()
+    history = History(tmp_path, clock)
+    for number in range(3):  # three runs, each over before the next one
+        graph, moment = GRAPH.replace("c1", f"c{number}"), clock.now
+        history.note({graph: told(10 * number, "tracker", at=moment).replace(b"tor:c1>", b"tor:c%d>" % number)})
+        clock.now += 4
+        history.note({graph: b""})
+        clock.now += 4
+    history.close()
+    at_each = [past_why(tmp_path, "position", 1_000_000.0 + seconds) for seconds in (2, 6, 10, 14, 18, 22)]
+    assert [len([one for one in said if one.startswith("position in navigate")]) for said in at_each] == [1] * 6
+    assert [", until " in said[0] for said in at_each] == [False, True] * 3
+    assert past_why(tmp_path, "position", None) == at_each[-1]
+    assert len({said[0].partition(",")[2] for said in at_each}) == 6, "each is told of its own run"
+
+
 def test_it_is_read_while_a_server_writes(tmp_path: Path) -> None:
     history = History(tmp_path, Clock())
     for number in range(5):
