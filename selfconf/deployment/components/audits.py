@@ -52,7 +52,7 @@ class Audits:
         held = self._state().held.get(component)
         if held is None or not self._runs_undisturbed(epoch):
             return
-        if answer is None:
+        if answer is None or answer.life != held.life:  # what another process answers says nothing of the one that acts
             life, before = self._silences.get(component, (held.life, 0))
             silences = before + 1 if life == held.life else 1
             self._silences[component] = held.life, silences
@@ -60,8 +60,6 @@ class Audits:
                 self._step(Failed(component, held.life, Cause.HUNG, "it lives, but answers no question"))
             return
         self._silences.pop(component, None)
-        if answer.life != held.life:
-            return
         self.dropped[component] = answer.dropped
         if answer.task != self._identity().task:
             self._calls.forget_connections()

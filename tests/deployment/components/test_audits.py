@@ -10,8 +10,9 @@ from selfconf.configurator.state import Phase
 from selfconf.deployment.components.audits import AUDIT, SILENT_AUDITS
 from selfconf.model.term import IRI
 from selfconf.sdk.inputs import Inputs
+from selfconf.sdk.runtime import ComponentRuntime
 from tests.deployment.tasks import TASK
-from tests.lab import Lab, iri
+from tests.lab import Lab, Recorder, iri
 
 pytestmark = pytest.mark.usefixtures("followed")
 
@@ -52,6 +53,20 @@ def test_a_component_that_lives_and_answers_no_question_is_replaced(lab: Lab) ->
     lab.runtimes["tracker"].calls.close()
     lab.let_pass((SILENT_AUDITS + 0.5) * AUDIT)
     assert lab.active() >= TASK | {"odometry"}
+    (lost,) = lab.acts("lost")
+    assert (lost.component, lost.cause) == (iri("person-tracker"), "hung")
+
+
+def test_a_component_that_answers_no_question_is_replaced_though_another_process_answers_in_its_place(lab: Lab) -> None:
+    """The other one stays, as its life has the smaller name, and the one that acts hangs, and so does not leave."""
+    agent = lab.agent()
+    lab.running(agent)
+    hangs = lab.runtimes["tracker"]
+    hangs.calls.close()
+    hangs._other_lives.close()
+    another = ComponentRuntime(lab.network.node(), lab.keys, hangs.profile, Recorder(), "0")
+    lab.let_pass((SILENT_AUDITS + 0.5) * AUDIT)
+    assert not another.closed
     (lost,) = lab.acts("lost")
     assert (lost.component, lost.cause) == (iri("person-tracker"), "hung")
 
