@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from selfconf import files, library
 from selfconf.api.answer import Answer
-from selfconf.api.arguments import Paths, checked_choice, checked_delay, checked_flag, listed_paths
+from selfconf.api.arguments import Paths, checked_delay, checked_flag, checked_upgrade, listed_paths
 from selfconf.api.configuring import refusal_with_places
 from selfconf.api.document_texts import text_of
 from selfconf.api.method import Method
@@ -16,10 +16,11 @@ from selfconf.api.ontologies import hierarchy_of, ontology_texts
 from selfconf.api.reading import gathered
 from selfconf.api.task import TaskSpecification, completed
 from selfconf.api.tasks.run_outcomes import AnsweredEvent, answered, answered_event, composing, searched_ecology
+from selfconf.api.tasks.task_options import TaskOptions
 from selfconf.bus.memory import Faults, MemoryBus, Network
 from selfconf.composites import Composites
 from selfconf.composition import TimeLimit
-from selfconf.configurator import Phase, Policy
+from selfconf.configurator import Phase
 from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.errors import AuthorError, ProgrammerError
 from selfconf.model.immutable import replace
@@ -74,7 +75,9 @@ class MemoryRun:
     (True, 'stopped')
     """
 
-    def __init__(self, ecology: MemoryEcology, task: TaskSpecification, method: Method, policy: Policy, wait: bool):
+    def __init__(
+        self, ecology: MemoryEcology, task: TaskSpecification, method: Method, options: TaskOptions, wait: bool
+    ) -> None:
         self._ecology, self._task, self._texts = ecology, task.document, task.texts
         self.events: list[AnsweredEvent] = []
         """What has happened, in order; the same values as those of `Run.events`."""
@@ -87,7 +90,9 @@ class MemoryRun:
         self._composer = method.composer(task)
         request = replace(
             RunRequest.of(self._composer, composing(self._composer)),
-            policy=policy,
+            policy=options.policy,
+            priority=options.priority_of(task),
+            upgrade=checked_upgrade(options.upgrade),
             patient=wait,
             report=self._report,
             ended=self._ended,
@@ -248,16 +253,19 @@ class MemoryEcology:
         wait: bool = False,
         strategy: str = "first",
         reasoning: str = "syntactic",
+        priority: int | None = None,
+        upgrade: float | None = None,
     ) -> MemoryRun:
         """Begin to run a task; `started()` of the result lets time pass until it runs.
 
-        Its roles see the ontologies of selfconf and those of the ecology in the mode `reasoning`. Raises BindingError,
-        and ProgrammerError for a task or word that is none.
+        Its roles see the ontologies of selfconf and those of the ecology in the mode `reasoning`. `priority` and
+        `upgrade` are as those of a run in the living ecology. Raises BindingError, and ProgrammerError for a task, word
+        or number that is none.
         """
-        complete, chosen = completed(task), checked_choice(Policy, "policy", policy)
+        complete, options = completed(task), TaskOptions.of(policy, "", priority, upgrade)
         method = Method.of(strategy, reasoning, self._ontologies)
         self.advance(1.5)  # the site looks at its shelf once a second
-        return MemoryRun(self, complete, method, chosen, checked_flag(wait, "wait"))
+        return MemoryRun(self, complete, method, options, checked_flag(wait, "wait"))
 
     def crash(self, component: Component) -> None:
         """End the process of a component as kill -9 does: it says nothing any more."""

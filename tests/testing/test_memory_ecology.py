@@ -252,6 +252,36 @@ def test_what_is_no_task_and_no_policy_is_refused_in_a_sentence() -> None:
         ecology.run(sc.template(TASK), policy="mend")
 
 
+@pytest.mark.parametrize("said", ["in the template", "as it is run"])
+def test_a_task_of_higher_priority_gets_what_another_holds(said: str) -> None:
+    ecology = MemoryEcology()
+    ecology.add(Clock("only"), CLOCK.replace("NAME", "a"))
+    ecology.add(Screen(), SCREEN)
+    patient = ecology.run(sc.template(TASK), wait=True).started()
+    urgent = TASK.replace(":tell ", ":warn ")
+    if said == "in the template":
+        second = ecology.run(sc.template(urgent.replace("sc:roles", "sc:priority 5 ; sc:roles"))).started()
+    else:
+        second = ecology.run(sc.template(urgent), priority=5).started()
+    assert not patient.running
+    second.stop()
+    assert ecology.until(lambda: patient.running)
+    with pytest.raises(ProgrammerError, match="a priority is a whole number"):
+        ecology.run(sc.template(TASK), priority=0.5)  # type: ignore[arg-type]  # that is what is tested
+
+
+def test_a_task_changes_for_the_better_where_it_is_asked_to() -> None:
+    ecology = MemoryEcology()
+    ecology.add(Clock("b"), CLOCK.replace("NAME", "b"))
+    screen = ecology.add(Screen(), SCREEN)
+    run = ecology.run(sc.template(TASK), upgrade=2.0).started()
+    ecology.add(Clock("a"), CLOCK.replace("NAME", "a"))
+    assert ecology.until(lambda: "a" in screen.shown and run.running)
+    assert not any(isinstance(event, ComponentLost) for event in run.events)
+    with pytest.raises(ProgrammerError, match="upgrade"):
+        ecology.run(sc.template(TASK), upgrade=-1.0)
+
+
 def test_a_refusal_names_the_line_in_a_text_where_a_role_or_component_is_described() -> None:
     ecology = MemoryEcology()
     ecology.add(Clock("only"), CLOCK.replace("NAME", "a").replace(":Clock", ":Clok"))

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from selfconf.api.arguments import checked_choice, checked_priority, checked_upgrade
+from selfconf.api.arguments import checked_choice, checked_upgrade
 from selfconf.api.configuring import refusal_with_places
 from selfconf.api.document_texts import DocumentText
 from selfconf.api.method import Method
@@ -46,7 +46,7 @@ def task_record(task: TaskSpecification, method: Method, how: TaskOptions = AS_U
     return TaskRecord(
         task=task_identity(how.name or safe_name(task.iri.short), secrets.token_hex(4)),
         revision=1,
-        priority=task.document.task.priority if how.priority is None else checked_priority(how.priority),
+        priority=how.priority_of(task),
         beginning=time.time(),
         document=turtle.to_turtle(document.triples()),
         source=sayable(document.source),

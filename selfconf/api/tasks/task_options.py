@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from selfconf.api.arguments import checked_choice, checked_text
+from selfconf.api.arguments import checked_choice, checked_priority, checked_text
+from selfconf.api.task import TaskSpecification
 from selfconf.configurator import Policy
 from selfconf.model.immutable import immutable
 from selfconf.protocol.keys import checked_name
@@ -25,11 +26,15 @@ class TaskOptions:
         """The options that a caller of the library has named.
 
         Raises ProgrammerError for a policy or text that is none, and AuthorError for a name that is none. The priority
-        and the seconds are checked by `task_record`.
+        is checked by `priority_of`, the seconds where they are used.
         """
         if checked_text(name, "the name of a task"):
             checked_name(name, "a task")
         return cls(checked_choice(Policy, "policy", policy), name, priority, upgrade)
+
+    def priority_of(self, task: TaskSpecification) -> int:
+        """The priority of a task that runs so. Raises ProgrammerError for one that is none."""
+        return task.document.task.priority if self.priority is None else checked_priority(self.priority)
 
 
 AS_USUAL = TaskOptions()
