@@ -14,7 +14,7 @@ from selfconf.configurator.deploying import DEPLOYING, Reaction, then
 from selfconf.configurator.disconnecting import disconnect
 from selfconf.configurator.effects import Decline, ReleaseFrom
 from selfconf.configurator.events import Answered, Call, Unanswered
-from selfconf.configurator.state import Applied, Loss, Phase, State
+from selfconf.configurator.state import Applied, Loss, Phase, Revival, State
 from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause, Verdict
@@ -73,7 +73,7 @@ def _declined(state: State, event: Answered) -> Reaction:
         return _busy(replace(counted, queued=state.queued | {event.component}), event)
     if event.verdict is Verdict.OTHER_LIFE:  # the life that was meant has ended, which may be heard of only later
         ended = event.detail or "it has begun another life"
-        return losing.lose(state, event.component, Loss(Cause.CRASH, ended, startable=event.startable))
+        return losing.lose(state, event.component, Loss(Cause.CRASH, ended, revival=Revival.where(event.startable)))
     return losing.lose(counted, event.component, _loss_by(event, state, again=not repeats))
 
 
@@ -83,10 +83,10 @@ def _loss_by(event: Answered, state: State, again: bool) -> Loss:
     Its site ends a life that does not obey its release, and can start it again; if it does not, once is enough. What
     has gone without a word, and with its site, may come back with it.
     """
-    startable = event.verdict is Unanswered.SILENT and event.startable and again
+    revival = Revival.where(event.verdict is Unanswered.SILENT and event.startable and again)
     is_gone = event.verdict is Unanswered.SITE_UNSEEN and event.component in state.ended_lives
     cause, detail = Cause.CRASH if is_gone else Cause.REFUSED, event.detail or event.verdict.value
-    return Loss(cause, detail, event.life, answered=isinstance(event.verdict, Verdict), startable=startable)
+    return Loss(cause, detail, event.life, answered=isinstance(event.verdict, Verdict), revival=revival)
 
 
 def _told(state: State, event: Answered) -> State:

@@ -37,7 +37,7 @@ from selfconf.configurator.effects import (
 )
 from selfconf.configurator.events import Answered, Call
 from selfconf.configurator.starting_order import Plan, plan_of, resting_waves
-from selfconf.configurator.state import Applied, Held, Phase, State
+from selfconf.configurator.state import Applied, Held, Phase, Revival, State
 from selfconf.model.holder import Holder
 from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
@@ -260,7 +260,7 @@ def end_deployment(state: State) -> Reaction:
         asked_about=frozenset(),
         repeats={},
         has_yielded=False,
-        lost={component: loss for component, loss in state.lost.items() if not loss.lives_anew},
+        lost={component: loss for component, loss in state.lost.items() if loss.revival is not Revival.LIVES_ANEW},
         news=state.news or state.heeds_others,  # by the next loss others may have let go, which they tell no task
         held={component: held for component, held in state.held.items() if component in wanted},
         unreleased=resting_waves(acting, surplus),

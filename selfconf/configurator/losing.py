@@ -10,7 +10,7 @@ from selfconf.configurator import deploying, phases
 from selfconf.configurator.deploying import DEPLOYING, Reaction, then
 from selfconf.configurator.effects import ReleaseFrom, WakeUp
 from selfconf.configurator.events import Call, Failed
-from selfconf.configurator.state import Held, Loss, Phase, Policy, State
+from selfconf.configurator.state import Held, Loss, Phase, Policy, Revival, State
 from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause
@@ -36,9 +36,8 @@ def heed_failure(state: State, event: Failed) -> Reaction:
     startable = event.startable and event.cause in PROCESS_ENDS
     if startable:  # the next life has not made the deployment begin anew
         state = replace(state, repeats={c: times for c, times in state.repeats.items() if c != event.component})
-    loss = Loss(
-        event.cause, event.detail, event.life or held.life, busy=event.cause is Cause.YIELD, startable=startable
-    )
+    life, busy = event.life or held.life, event.cause is Cause.YIELD
+    loss = Loss(event.cause, event.detail, life, busy=busy, revival=Revival.where(startable))
     if event.cause not in GOES_ON:
         return lose(state, event.component, loss)
     return _let_go(state, event.component, loss)
@@ -54,7 +53,7 @@ def _ended_since(state: State, event: Failed) -> State:
         return state
     in_that_life = loss.lasts and loss.life == event.life
     if event.startable and (loss.cause is Cause.CRASH or in_that_life):
-        known = replace(loss, startable=True)
+        known = replace(loss, revival=max(loss.revival, Revival.POSSIBLE))
     elif in_that_life and loss.cause is Cause.SILENCE:
         known = replace(loss, cause=Cause.CRASH, detail=event.detail)
     else:
@@ -92,7 +91,7 @@ def lose(state: State, component: IRI, loss: Loss) -> Reaction:
     """Turn the lost one off, drop its profile, and search again, with the rest kept or dismantled first."""
     epoch = state.epoch + 1
     if loss.startable and component in state.held and not state.held[component].acts:
-        loss = replace(loss, broke_early=True)
+        loss = replace(loss, revival=Revival.BROKE_EARLY)
     without = replace(
         state,
         epoch=epoch,

@@ -51,7 +51,7 @@ from selfconf.configurator.events import (
     WaitedLong,
 )
 from selfconf.configurator.starting_order import parameter_values, wiring
-from selfconf.configurator.state import Applied, Held, Loss, Phase, State
+from selfconf.configurator.state import Applied, Held, Loss, Phase, Revival, State
 from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
 from selfconf.protocol.messages import Cause, RecordedLoss
@@ -140,7 +140,7 @@ def _appeared(state: State, event: Appeared) -> Reaction:
     lost = {component: loss for component, loss in state.lost.items() if _stays_lost(component, loss, event.lives)}
     if state.phase is not Phase.RUNNING and not state.waits_for_news:
         again = (one for one, loss in state.lost.items() if one not in lost and loss.broke_early)
-        lost |= {one: replace(state.lost[one], lives_anew=True) for one in again}
+        lost |= {one: replace(state.lost[one], revival=Revival.LIVES_ANEW) for one in again}
     owed = event.lives.keys() & state.owed.keys() - set(chain(*state.unreleased))  # those come to rest in their turn
     effects = [ReleaseFrom(component, state.owed[component]) for component in sorted(owed)]
     known = replace(state, lost=lost, news=True)

@@ -114,6 +114,24 @@ class Held:
         return self.acts and not self.life
 
 
+class Revival(IntEnum):
+    """Whether the site of a lost component can start it again, its process having ended or being about to."""
+
+    NONE = 0
+    """It goes on, or its site cannot start it again."""
+    POSSIBLE = 1
+    """Its site can start it again."""
+    BROKE_EARLY = 2
+    """Its site can start it again, but it broke before it acted."""
+    LIVES_ANEW = 3
+    """It lives again, but broke before it acted: it is tried again after what was not tried."""
+
+    @classmethod
+    def where(cls, startable: bool) -> Revival:
+        """That of a component that has just been lost."""
+        return cls.POSSIBLE if startable else cls.NONE
+
+
 @immutable
 class Loss:
     """Why a component was given up, and in which life."""
@@ -125,17 +143,22 @@ class Loss:
     """Whether another task held it: it may be had once that one lets go of it."""
     answered: bool = field(default=True, kw_only=True)
     """Whether that is known from the component: else it could not be reached, and may well be able to act."""
-    startable: bool = field(default=False, kw_only=True)
-    """Whether its process has ended, or is about to, and its site can start it again."""
-    broke_early: bool = field(default=False, kw_only=True)
-    """Whether it broke before it acted, and its site can start it again."""
-    lives_anew: bool = field(default=False, kw_only=True)
-    """Whether it lives again, but broke before it acted: it is tried again after what was not tried."""
+    revival: Revival = field(default=Revival.NONE, kw_only=True)
 
     @property
     def why(self) -> str:
         """The cause, with its detail if there is one, for people."""
         return f"{self.cause.value}, {self.detail}" if self.detail else self.cause.value
+
+    @property
+    def startable(self) -> bool:
+        """Whether its site can start it again, or has done so."""
+        return self.revival >= Revival.POSSIBLE
+
+    @property
+    def broke_early(self) -> bool:
+        """Whether it broke before it acted, and its site can start it again, or has done so."""
+        return self.revival >= Revival.BROKE_EARLY
 
     @property
     def lasts(self) -> bool:

@@ -287,7 +287,7 @@ class TaskRunner:
         """
         for component, loss in self.state.lost.items():
             before = known.get(component)
-            if before is None or replace(before, startable=loss.startable, lives_anew=loss.lives_anew) != loss:
+            if before is None or replace(before, revival=loss.revival) != loss:
                 self._components.abandon(component)
                 self._record.lost(component, loss.cause.value, loss.detail, self.clock())
                 self.reports.note(ComponentLost(component, loss.cause.value, loss.detail))

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from selfconf.configurator.state import Held, Loss, Phase, State
+from selfconf.configurator.state import Held, Loss, Phase, Revival, State
 from selfconf.model.configuration import Wants
 from selfconf.model.holder import Holder
 from selfconf.model.term import IRI
@@ -34,9 +34,9 @@ def test_a_search_that_finds_nothing_counts_as_long_as_nothing_has_changed() -> 
 
 
 def test_a_lost_component_that_its_site_can_start_is_worth_another_search() -> None:
-    crashed = Loss(Cause.CRASH, startable=True)
+    crashed = Loss(Cause.CRASH, revival=Revival.POSSIBLE)
     assert State(lost={EYE: crashed}).searches_again
-    assert not State(lost={EYE: replace(crashed, startable=False)}).searches_again
+    assert not State(lost={EYE: replace(crashed, revival=Revival.NONE)}).searches_again
 
 
 def test_what_others_would_share_is_contested_where_they_want_something_else_and_this_task_has_not_got_it() -> None:
