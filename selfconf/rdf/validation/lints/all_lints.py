@@ -8,9 +8,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from selfconf.model.diagnostic import Diagnostic
+from selfconf.rdf.validation.lints.descriptions import local_components, repeated_descriptions
 from selfconf.rdf.validation.lints.flow import idle_loops, starving_inputs
 from selfconf.rdf.validation.lints.hierarchies import circular_hierarchies, mixed_hierarchies, unlisted_members
 from selfconf.rdf.validation.lints.linted_file import LintedFile
+from selfconf.rdf.validation.lints.literals import literals_for_iris, literals_for_terms, unfit_literals
+from selfconf.rdf.validation.lints.misplaced_terms import misplaced_terms, templates_as_groundings
+from selfconf.rdf.validation.lints.ports import ownerless_ports, typed_operations, untyped_ports
+from selfconf.rdf.validation.lints.prefixes import prefixes, prefixes_of_queries, undeclared_prefixes
 from selfconf.rdf.validation.lints.signal_classes import (
     components_as_signals,
     misplaced_classes_in_shapes,
@@ -43,21 +48,8 @@ from selfconf.rdf.validation.lints.templates import (
 from selfconf.rdf.validation.lints.terms import (
     classes_as_properties,
     imported_ontologies,
-    literals_for_iris,
-    literals_for_terms,
-    local_components,
-    misplaced_terms,
-    ownerless_ports,
-    prefixes,
-    prefixes_of_queries,
     properties_as_classes,
-    repeated_descriptions,
-    templates_as_groundings,
-    typed_operations,
-    undeclared_prefixes,
-    unfit_literals,
     unknown_terms,
-    untyped_ports,
 )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from selfconf.model.codes import PREAMBLE
-from tests.rdf.validation.lints.test_terms import lints, only
+from tests.rdf.validation.lints.linted_text import lints, only
 
 LOOP = """
 :t a sc:Template ; sc:roles ( :one :two :three ) .

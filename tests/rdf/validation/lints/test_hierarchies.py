@@ -6,8 +6,8 @@ import pytest
 
 from selfconf.model.codes import PREAMBLE
 from selfconf.model.diagnostic import Diagnostic
-from selfconf.rdf.validation.checking import validate_texts
-from tests.rdf.validation.lints.test_terms import HEAD, ONTOLOGIES, SHAPES, SourceText, lints, only
+from selfconf.rdf.validation.checking import SourceText, validate_texts
+from tests.rdf.validation.lints.linted_text import HEAD, ONTOLOGIES, SHAPES, lints, only
 
 
 def labelled(*terms: str, kind: str = "owl:Class") -> str:

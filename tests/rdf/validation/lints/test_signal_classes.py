@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.rdf.validation.lints.test_terms import TEMPLATE, lints, only
+from tests.rdf.validation.lints.linted_text import TEMPLATE, lints, only
 
 CAMERA = ":a a sc:Component, rob:Camera ; "
 PORT = CAMERA + "sc:hasInput [ sc:name 'x' ; sc:signalType rob:Image ; sc:accepts "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.rdf.validation.lints.test_terms import HEAD, TEMPLATE, lints, only
+from tests.rdf.validation.lints.linted_text import HEAD, TEMPLATE, lints, only
 
 VALIDATOR = "sh:nodeValidator [ sh:select 'SELECT $this WHERE { $this ?p $least }' ]"
 
