@@ -21,7 +21,8 @@ from typing import Any
 
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
-from selfconf.search.engines.encoding import FEW_TO_COUNT, AtMost, Encoding, Implied
+from selfconf.search.engines.encoding import Encoding
+from selfconf.search.engines.formula import FEW_TO_COUNT, AtMost, Implied
 from selfconf.search.reduction import Constraint, Option, ReducedProblem
 
 SOLVER = "Minicard"

@@ -40,13 +40,11 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from functools import reduce
-from operator import and_, or_
-from typing import NamedTuple
 
 from selfconf.search.engines.capacity_counting import within_capacity
 from selfconf.search.engines.counting_order import counting_order
 from selfconf.search.engines.exclusion import exclusive_groups
+from selfconf.search.engines.formula import FEW_TO_COUNT, Formula, Implied
 from selfconf.search.engines.group_counting import ExclusiveGroups
 from selfconf.search.engines.need_counting import Undersupply, counted_needs, limits, supplied
 from selfconf.search.engines.probing import probed
@@ -54,34 +52,9 @@ from selfconf.search.engines.support_clauses import clauses_of_needs, clauses_of
 from selfconf.search.engines.symmetry import interchangeable
 from selfconf.search.reduction import Constraint, Distinct, Fed, Limit, Played, ReducedProblem, Shared
 
-FEW_TO_COUNT = 4
-"""At most this number of some is counted one after the other, in fewer clauses than a totalizer has; more by that."""
 
-
-class AtMost(NamedTuple):
-    """At most a number of the literals hold, if the literals whose negations are in `force` do."""
-
-    literals: Sequence[int]
-    most: int
-    force: Sequence[int] = ()
-
-    @property
-    def worth_counting(self) -> bool:
-        """Whether clauses that count are worth their number: of few, and of most of them, there is little to learn."""
-        return FEW_TO_COUNT < self.most <= len(self.literals) // 2
-
-
-class Implied(NamedTuple):
-    """Each of the literals implies the literal: a clause of two literals for each, written when a solver reads it."""
-
-    literal: int
-    literals: Sequence[int]
-    alone: bool = True
-    """Whether nothing else brings the literal about, so that some solvers take them as one constraint."""
-
-
-class Encoding:
-    """The clauses and bounds of a reduced problem; literals are numbered from one."""
+class Encoding(Formula):
+    """The clauses and bounds of a reduced problem."""
 
     def __init__(
         self,
@@ -91,16 +64,10 @@ class Encoding:
         ordered: bool = False,
         patience: int | None = None,
     ) -> None:
+        super().__init__()
         self.reduced = reduced
-        self.top = 0
-        """The highest literal so far."""
-        self.statements: list[list[int] | Implied] = []
-        """The clauses, as lists of literals or several in one."""
-        self.bounds: list[AtMost] = []
         self.guards: dict[Constraint, int] = {}
         self._guarded = guarded
-        self._sums: dict[tuple[int, ...], int] = {}
-        """The literals that hold iff one of others does, by these."""
         self._needing: Mapping[int, list[int]] = {}
         """The literals of the options that have each need, of those needs that are written."""
         self._supporting: Mapping[int, Mapping[int, list[int]]] = {}
@@ -123,27 +90,7 @@ class Encoding:
             self._limits(reduced.limits)
         if ordered:
             for first, second in interchangeable(reduced):
-                self._ascending(self.plays[first], self.plays[second])
-
-    @property
-    def size(self) -> int:
-        """About how many clauses there are, for a solver that needs them to count."""
-        clauses = sum([len(one.literals) if isinstance(one, Implied) else 1 for one in self.statements])
-        return clauses + sum([len(some) * min(most, len(some) - most) for some, most, _ in self.bounds])
-
-    def clauses(self) -> Iterator[list[int]]:
-        """Yield the clauses one by one."""
-        for statement in self.statements:
-            if isinstance(statement, Implied):
-                for one in statement.literals:
-                    yield [-one, statement.literal]
-            else:
-                yield statement
-
-    def literal(self) -> int:
-        """Return a new literal."""
-        self.top += 1
-        return self.top
+                self.ascending(self.plays[first], self.plays[second])
 
     def _literals(self, role: int, options: int) -> tuple[int, ...]:
         """Return a literal for each option; of two options of which one must play, each is the other's negation."""
@@ -163,10 +110,6 @@ class Encoding:
             guard = self.guards[constraint] = self.literal()
         return [-guard]
 
-    def _at_most(self, literals: Sequence[int], most: int, force: Sequence[int] = ()) -> None:
-        if most < len(literals):
-            self.bounds.append(AtMost(literals, most, force))
-
     def _roles(self) -> None:
         for role, asked in self._asked.items():
             literals = self.plays[role]
@@ -175,7 +118,7 @@ class Encoding:
                 continue
             if FEW_TO_COUNT < asked < len(literals):
                 literals = tuple([literals[place] for place in counting_order(self.reduced.options[role])])
-            self._at_most(literals, asked)
+            self.at_most(literals, asked)
             if len(literals) < asked:
                 impossible = self.literal()
                 self.statements.append([*force, impossible])
@@ -183,7 +126,7 @@ class Encoding:
             elif asked == 1:
                 self.statements.append([*force, *literals])
             else:
-                self._at_most([-literal for literal in literals], len(literals) - asked, force)
+                self.at_most([-literal for literal in literals], len(literals) - asked, force)
 
     def _distinct(self) -> None:
         playing: dict[str, list[int]] = {}
@@ -193,7 +136,7 @@ class Encoding:
                     playing.setdefault(option.component, []).append(literal)
         for same in playing.values():
             if len(same) > 1:
-                self._at_most(same, 1, self._in_force(Distinct()))
+                self.at_most(same, 1, self._in_force(Distinct()))
 
     def _needs(self, stated: frozenset[int]) -> None:
         """Write the needs that are not stated otherwise."""
@@ -235,7 +178,7 @@ class Encoding:
     def _supports(self, by_role: Mapping[int, list[int]]) -> Sequence[int]:
         """Return literals of which one holds iff one of some options plays, given by role."""
         if len(by_role) > 1:
-            return [self._any_of(some) for some in by_role.values()]
+            return [self.any_of(some) for some in by_role.values()]
         alone = next(iter(by_role.values()), [])
         known = self._sums.get(tuple(alone)) if self._sums else None
         return alone if known is None else [known]
@@ -285,18 +228,6 @@ class Encoding:
                 found[need][role] = some
         return found
 
-    def _any_of(self, literals: list[int]) -> int:
-        """Return a literal that holds iff one of some does."""
-        if len(literals) == 1:
-            return literals[0]
-        known = tuple(literals)
-        found = self._sums.get(known)
-        if found is None:
-            found = self._sums[known] = self.literal()
-            self.statements.append([-found, *literals])
-            self.statements.append(Implied(found, literals))
-        return found
-
     def _values(self, settled: frozenset[int]) -> None:
         """Write what variables say that is not stated otherwise."""
         if len(settled) == len(self.reduced.values):
@@ -305,40 +236,9 @@ class Encoding:
         for variable, some in enumerate(self.reduced.constraining()):
             if some and variable not in settled:
                 constrained = [(options[number], mask) for _, number, mask in some]
-                values = self._one_value(constrained, self._in_force(Shared(variable)))
+                values = self.one_value(constrained, self._in_force(Shared(variable)))
                 if values:
                     self._valued.append((some, values))
-
-    def _one_value(self, constrained: Sequence[tuple[int, int]], force: Sequence[int]) -> list[tuple[int, int]]:
-        """Let options have a common value of a variable, given their literals and the masks of what they admit.
-
-        Return the masks of values that have a literal, with that.
-        """
-        by_mask: defaultdict[int, list[int]] = defaultdict(list)
-        for literal, mask in constrained:
-            by_mask[mask].append(literal)
-        if reduce(and_, by_mask):
-            return []  # one value suits all of them
-        values = [(alike, self.literal()) for alike in _told_apart(by_mask)]
-        self._at_most([value for _, value in values], 1)
-        for mask, literals in by_mask.items():
-            # A mask below zero admits every value but some: it only forbids these, and a model may set none at all.
-            said = (
-                [[*force, *[value for some, value in values if mask & some]]]
-                if mask >= 0
-                else [[*force, -value] for some, value in values if not mask & some]
-            )
-            self.statements += [[-literal, *rest] for rest in said for literal in literals]
-        return values
-
-    def _ascending(self, first: Sequence[int], second: Sequence[int]) -> None:
-        """Let the option of one role come before that of another one; one of each plays."""
-        before: int | None = None
-        for earlier, later in zip(first, second, strict=True):
-            self.statements.append([-later] if before is None else [-later, before])
-            reached = self.literal()
-            self.statements.append([-reached, earlier] if before is None else [-reached, earlier, before])
-            before = reached
 
     def support(self) -> list[list[int] | Implied]:
         """Add support clauses, and return all that is added."""
@@ -348,7 +248,7 @@ class Encoding:
             sink = self.reduced.needs.scopes[need].role
             links.setdefault((source, sink), {})[need] = self._needing[need], literals
         for (source, sink), needs in links.items():
-            self.statements += [*clauses_of_needs(self.plays[source], self.plays[sink], needs, self._any_of)]
+            self.statements += [*clauses_of_needs(self.plays[source], self.plays[sink], needs, self.any_of)]
         options = [literal for literals in self.plays for literal in literals]
         for some, values in self._valued:
             admitted: defaultdict[int, dict[int, int]] = defaultdict(dict)
@@ -371,7 +271,7 @@ class Encoding:
             admitting: defaultdict[int, list[int]] = defaultdict(list)
             for _, number, mask in some:
                 admitting[mask].append(options[number])
-            self.statements += exclusions_of_values(admitting, values, self._any_of)
+            self.statements += exclusions_of_values(admitting, values, self.any_of)
         return self.statements[before:]
 
     def probe(self) -> list[list[int]]:
@@ -399,7 +299,7 @@ class Encoding:
         counted = counted_needs(self.reduced, single=True)
         left, able = supplied(self.reduced, counted), within_capacity(self.reduced)
         if isinstance(left, Undersupply) or able is None:
-            self.statements += [[self.literal()], [-self.top]]
+            self.contradict()
             return
         self._rule_out(left)
         self._rule_out(able)
@@ -426,7 +326,7 @@ class Encoding:
                 if (role, option.number) in limit.options
             ]
             if limit.most > 0:
-                self._at_most(some, limit.most)
+                self.at_most(some, limit.most)
             else:
                 self.statements += [[-literal] for literal in some]
 
@@ -436,28 +336,13 @@ class Encoding:
             if len(group) == 2:
                 self.statements.append([-options[number] for number in group])
             else:
-                self._at_most([options[number] for number in group], 1)
+                self.at_most([options[number] for number in group], 1)
         self._counted(known)
 
     def _counted(self, known: ExclusiveGroups) -> None:
         """Write what follows from counting groups."""
         if known.impossible:
-            self.statements += [[self.literal()], [-self.top]]
+            self.contradict()
         options = [literal for literals in self.plays for literal in literals]
         self.statements += [[options[number] for number in some] for some in known.played]
         self.statements += [[-options[number]] for number in known.excluded]
-
-
-def _told_apart(masks: Collection[int]) -> list[int]:
-    """Return the values that masks of zero or more admit, as disjoint masks: together those that none tells apart.
-
-    What only masks below zero admit is left out, as each of them admits values beside those that have a bit.
-    """
-    named = reduce(or_, [mask for mask in masks if mask >= 0], 0)
-    if named.bit_count() <= len(masks):
-        # So many masks leave hardly any values alike, so that to look for these takes longer than it saves.
-        return [1 << bit for bit in range(named.bit_length()) if named >> bit & 1]
-    parts = [named]
-    for mask in masks:
-        parts = [one for part in parts for one in (part & mask, part & ~mask) if one]
-    return parts

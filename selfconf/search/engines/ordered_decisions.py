@@ -26,7 +26,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
-from selfconf.search.engines.encoding import Encoding, Implied
+from selfconf.search.engines.encoding import Encoding
+from selfconf.search.engines.formula import Implied
 
 if TYPE_CHECKING:
     import clingo

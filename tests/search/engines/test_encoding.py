@@ -8,7 +8,8 @@ from itertools import product
 import pytest
 
 from benchmarks.search.families.puzzles import pigeonholes
-from selfconf.search.engines.encoding import Encoding, Implied
+from selfconf.search.engines.encoding import Encoding
+from selfconf.search.engines.formula import Implied
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import Constraint, Distinct, Fed, Played, pruned, reduced
 from tests.search.oracle import World
