@@ -7,14 +7,8 @@ go cost two processors and do not recover from a common stall; fifty clients of 
 
 A site with an endpoint of its own, or that connects to another machine, relays beside the others.
 
-A relay that hangs receives nothing. A site that has had no hub for `HUNG` seconds takes its place on another port and
-writes into its file that it relays no more; when it goes on it reads that, and closes its hub. All others, and the site
-itself, may still be waiting for the one that hangs to answer them, at each endpoint where it listens. So all let the
-new one have the time of these handshakes and `REACHED` seconds: else each would take the place of the one before, or
-that one would take its own hub for broken, and nothing would relay for longer than a moment.
-
-A relay whose process runs is left its place for `SLOW` seconds more: it may only be busy with all those that have lost
-it, as after a common stall. Who takes its place cuts off all that have reached it again, and the same begins anew.
+A relay may hang. A site that has had no hub for long takes its place on another port, and writes into its file that it
+relays no more; `hub_wait` says how long.
 
 The usual ports of two ecologies may overlap. Then a site that has lost its hub may find that of the other ecology:
 that passes on what is said in this one as well, but it is not where programs look for this one. So a site takes the
@@ -38,8 +32,9 @@ from pathlib import Path
 from selfconf import rendezvous, this_machine
 from selfconf.api.sites.announced_site import AnnouncedSite
 from selfconf.api.sites.hub_health import HubHealth
+from selfconf.api.sites.hub_wait import HubWait
 from selfconf.bus.timer import Timer
-from selfconf.bus.zenoh import GREETING, Hub, Security, ZenohBus, client, cut_connections, listens, router
+from selfconf.bus.zenoh import Hub, Security, ZenohBus, client, cut_connections, listens, router
 from selfconf.errors import NetworkError
 from selfconf.protocol.endpoints import endpoint_host, endpoint_port
 from selfconf.protocol.keys import Keys
@@ -59,12 +54,6 @@ STILL_MINE = 1.0
 """How often, in seconds, a site that relays looks whether another has taken its place."""
 STILL_HEARD = 6
 """After how many times as long a site that does not relay looks again whether its hub answers."""
-HUNG = 0.5
-"""Seconds without a hub, beyond the lease, after which one that relays and is suspended is taken to hang."""
-SLOW = 1.5
-"""Seconds more for one whose process runs: where all have lost it at once, it may only be busy with the others."""
-REACHED = 1.0
-"""Seconds until a site has surely reached one that has begun to relay, beyond handshakes with those that hang."""
 
 
 class Joining:
@@ -89,10 +78,8 @@ class Joining:
         self._log = ""
         self.served: Sequence[str] = ()
         """The files and folders with what the site advertises, for others on this machine."""
-        self._awaited = hubs
-        """The endpoints of the hubs that there were when this site last had one, or that it has since tried."""
-        self._hung_at: float | None = None
-        """When the sites that relay are taken to hang; None while there is a hub."""
+        # With keys a hub has an endpoint for its own host, too.
+        self._hub_wait = HubWait(self.bus.now, hubs, endpoints_each=1 if security is None else 2)
         self._next_look = Timer(self.bus, LOOK_AGAIN, self._look)
         self._hub_health = HubHealth(self.bus, Keys(ecology).site_life(name, "*"), self._hub_is_broken)
         self.bus.watch_link(self._link_changed)
@@ -221,20 +208,16 @@ class Joining:
         if self.bus.link:
             self._reached()
         else:
-            self._lost()
+            self._hub_wait.begin()
         self._next_look.reset(random.uniform(0.0, HASTE))
 
     def _reached(self) -> None:
         """There is a hub; where it is one that has begun since, say so, or others would try the one before first."""
-        self._awaited, self._hung_at = self._other_hubs(), None
-        if self._file.is_there and not self.relays and self._awaited and self._reached_at not in self._awaited:
-            self._reached_at = self._awaited[0]
+        hubs = self._other_hubs()
+        self._hub_wait.end(hubs)
+        if self._file.is_there and not self.relays and hubs and self._reached_at not in hubs:
+            self._reached_at = hubs[0]
             self._file.write_again()
-
-    def _lost(self) -> None:
-        """There is no hub, from now on unless it was so before."""
-        if self._hung_at is None:
-            self._hung_at = self.bus.now() + HUNG
 
     def _look_from_time_to_time(self) -> None:
         self.bus.later(STILL_MINE * (1 if self.relays else STILL_HEARD), self._look_from_time_to_time)
@@ -247,7 +230,7 @@ class Joining:
         if self._is_replaced() or not (self.relays or self.bus.link):
             self._next_look.stop()
             self._look()
-        elif self.bus.link or (self.relays and self._hangs(SLOW)):
+        elif self.bus.link or (self.relays and self._hub_wait.is_over(suspended=False)):
             self._hub_health.ask()
 
     def _hub_is_broken(self) -> None:
@@ -277,7 +260,7 @@ class Joining:
         if not self._file.is_there:
             return
         if not self.bus.link:
-            self._lost()  # when the change was reported, it was not lost yet
+            self._hub_wait.begin()  # when the change was reported, it was not lost yet
         done = self._in_order() or self._looked_in_turn()
         if not done or not self.bus.link:
             self._next_look.set()
@@ -315,10 +298,10 @@ class Joining:
         """Relay, if no site does, or if those that do hang."""
         relaying = self._relaying()
         hubs = _reached_at(relaying)
-        if hubs != self._awaited:
-            self._await(hubs)
-        patience = 0.0 if all(site.is_suspended() for site in relaying) else SLOW
-        if (not hubs or self._hangs(patience)) and self._is_believed():
+        if hubs != self._hub_wait.awaited:
+            self._hub_wait.begin_anew(hubs)
+        suspended = all(site.is_suspended() for site in relaying)
+        if (not hubs or self._hub_wait.is_over(suspended)) and self._is_believed():
             self._relay_at(self._places(), hubs)
 
     def _places(self) -> list[str]:
@@ -326,16 +309,6 @@ class Joining:
         loopback = self._usual[0].rpartition(":")[0]
         before = [self._reached_at] if self._reached_at.rpartition(":")[0] == loopback else []
         return list(dict.fromkeys([*self._usual, *before]))
-
-    def _await(self, hubs: list[str]) -> None:
-        """Let those that relay since this moment be reached: those before may have to be given up one by one first."""
-        endpoints = 1 if self._security is None else 2  # with keys a hub has one for its own host, too
-        handshakes = endpoints * max(1, len(self._awaited))
-        self._awaited, self._hung_at = hubs, self.bus.now() + handshakes * GREETING + REACHED
-
-    def _hangs(self, patience: float) -> bool:
-        """Whether there is no hub, and has been none for longer than it takes to reach one, and some seconds more."""
-        return self._hung_at is not None and self.bus.now() > self._hung_at + patience
 
     def _is_believed(self) -> bool:
         """Whether others would connect to a hub of this site, and it to theirs: not with an expired certificate."""
@@ -366,7 +339,7 @@ class Joining:
                         this_machine.announce_no_relay(other)
             known = [one for one in hubs if one not in self._usual]
             self.bus.relay(hub, [*known, *strange, *self._elsewhere])
-            self._await([endpoint])
+            self._hub_wait.begin_anew([endpoint])
             self._file.write_again()
             return
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from selfconf import rendezvous, this_machine
-from selfconf.api.sites import hub_health, joining
+from selfconf.api.sites import hub_health, hub_wait, joining
 from selfconf.api.sites.joining import Joining
 from selfconf.bus.zenoh import client, router
 from selfconf.errors import NetworkError
@@ -125,7 +125,7 @@ def test_the_place_of_one_that_does_not_answer_is_taken_sooner_if_its_process_is
     machine: Machine, monkeypatch: pytest.MonkeyPatch, suspended: bool
 ) -> None:
     """One whose process runs may only be busy, as when all others have lost it at once."""
-    monkeypatch.setattr(joining, "SLOW", 60.0)
+    monkeypatch.setattr(hub_wait, "SLOW", 60.0)
     monkeypatch.setattr(this_machine, "stopped", lambda process: suspended)
     for name in "ab":
         machine.join(name)
@@ -135,7 +135,7 @@ def test_the_place_of_one_that_does_not_answer_is_taken_sooner_if_its_process_is
     silent.bus.relay_no_more()
     try:
         assert machine.until(lambda: site.relays, seconds=10.0 if suspended else 2.0) is suspended
-        monkeypatch.setattr(joining, "SLOW", 0.1)
+        monkeypatch.setattr(hub_wait, "SLOW", 0.1)
         assert machine.until(lambda: site.relays)
     finally:
         machine.sites["a"] = silent
