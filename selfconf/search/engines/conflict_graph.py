@@ -19,6 +19,8 @@ SHARE_UNFIT = 2
 """A need says little if at most one in this number of the options that could feed it do not."""
 SHARE_OFTEN = 2
 """Of the needs that one role alone feeds one in this number has to be often supported, or none of them is looked at."""
+FEW_BITS = 8
+"""Fewer bits than this are set one by one."""
 CONFLICTS_PER_OPTION = 200
 """How many conflicts are looked at, for each option."""
 
@@ -149,10 +151,16 @@ def _few(options: Sequence[Option]) -> int:
 
 def mask_of(numbers: Sequence[int]) -> int:
     """Return a set of numbers as the bits of one."""
-    mask = 0
+    if len(numbers) < FEW_BITS:
+        mask = 0
+        for number in numbers:
+            mask |= 1 << number
+        return mask
+    # One pass over bytes: to set a bit of an integer copies all of it.
+    found = bytearray((max(numbers) >> 3) + 1)
     for number in numbers:
-        mask |= 1 << number
-    return mask
+        found[number >> 3] |= 1 << (number & 7)
+    return int.from_bytes(found, "little")
 
 
 def numbers_of(mask: int) -> Iterator[int]:

@@ -12,7 +12,9 @@ be of two roles each, which say no more than the needs do, and are not counted: 
 
 Which options exclude each other is read by a `ConflictGraph`, and what follows from the groups found by a
 `GroupCounting`. Where nothing but components exclude each other, the groups are the components: matching has counted
-all but the sets of roles that need each of their components.
+all but the sets of roles that need each of their components. Where roles that have components in common do not feed
+each other, as carts of one pool that each serve a hall of their own, a component is a group as it stands, too: to enter
+it in the graph takes time and memory as the square of the options.
 """
 
 from __future__ import annotations
@@ -53,10 +55,9 @@ def exclusive_groups(reduced: ReducedProblem, distinct: bool = True, patience: i
     if not by_values and not any(graph.across):
         of_components = _groups_of_components(reduced) if shared else ExclusiveGroups()
         return replace(of_components, stated=frozenset(graph.stated))
-    if shared:
-        graph.add_components()
+    same = _apart_from_needs(graph, needs) if shared else []
     graph.settled = frozenset(of_values)
-    groups = [*by_values, *graph.groups()]
+    groups = [*by_values, *same, *graph.groups()]
     return GroupCounting(graph, groups).counted(groups, patience)
 
 
@@ -104,11 +105,10 @@ def _groups_of_components(reduced: ReducedProblem) -> ExclusiveGroups:
 
     Counting then means components: where some roles share no component with any other, and have as many as slots.
     """
-    same: dict[IRI, list[int]] = {}
+    same = _by_component(reduced)
     roles_of: dict[IRI, list[int]] = {}
-    for number, option in enumerate(chain.from_iterable(reduced.options)):
+    for option in chain.from_iterable(reduced.options):
         if option.component:
-            same.setdefault(option.component, []).append(number)
             roles_of.setdefault(option.component, []).append(option.kind.role)
     groups = [some for some in same.values() if len(some) > 1]
     if not groups:
@@ -125,6 +125,34 @@ def _groups_of_components(reduced: ReducedProblem) -> ExclusiveGroups:
         if len(roles) > 1:
             played += [same[component] for component in components]
     return ExclusiveGroups(groups, played=played)
+
+
+def _by_component(reduced: ReducedProblem) -> dict[IRI, list[int]]:
+    """Return the numbers of the options that each component is."""
+    same: dict[IRI, list[int]] = {}
+    for number, option in enumerate(chain.from_iterable(reduced.options)):
+        if option.component:
+            same.setdefault(option.component, []).append(number)
+    return same
+
+
+def _apart_from_needs(graph: ConflictGraph, needs: Mapping[int, set[int]]) -> list[list[int]]:
+    """Return the groups that components are as they stand; none if they have been entered in the graph."""
+    if _among_sharing(graph.reduced, needs):
+        graph.add_components()
+        return []
+    return [some for some in _by_component(graph.reduced).values() if len(some) > 1]
+
+
+def _among_sharing(reduced: ReducedProblem, needs: Mapping[int, set[int]]) -> bool:
+    """Return whether a role alone feeds needs of a role that has a component in common with it."""
+    scopes = reduced.needs.scopes
+    bound = {(source, scopes[need].role) for source, some in needs.items() for need in some}
+    having = {
+        role: {option.component for option in reduced.options[role] if option.component}
+        for role in set(chain.from_iterable(bound))
+    }
+    return any(not having[source].isdisjoint(having[sink]) for source, sink in bound)
 
 
 def _connected(roles_of: Mapping[IRI, Sequence[int]]) -> Iterator[tuple[set[int], list[IRI]]]:

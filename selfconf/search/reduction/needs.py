@@ -208,13 +208,17 @@ class Wiring:
         known = self._fed_of.get(several)
         if known is not None:
             return known
-        fed = self._fed_of[several] = {}
+        gathered: dict[IRI, list[int]] = {}  # a role may feed thousands that all want the same signal
         for numbering in several:
             for signal, number in numbering.plain.items():
-                fed[signal] = (*fed[signal], number) if signal in fed else (number,)
+                if signal in gathered:
+                    gathered[signal].append(number)
+                else:
+                    gathered[signal] = [number]
             for (signals, _), number in numbering.others.items():
                 for signal in signals:
-                    fed[signal] = (*fed.get(signal, ()), number)
+                    gathered.setdefault(signal, []).append(number)
+        fed = self._fed_of[several] = {signal: tuple(numbers) for signal, numbers in gathered.items()}
         return fed
 
     def _of_signals(self, outputs: Sequence[tuple[Output, ...]], fed: Mapping[IRI, tuple[int, ...]]) -> list[list[int]]:

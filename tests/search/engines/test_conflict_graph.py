@@ -12,6 +12,8 @@ from selfconf.search.reduction import pruned, reduced
 
 def test_a_mask_has_the_numbers_that_it_was_made_of() -> None:
     assert list(numbers_of(mask_of([5, 0, 64]))) == [0, 5, 64]
+    many = [*range(900, 3, -7)]
+    assert mask_of(many) == sum(1 << number for number in many)
     assert list(numbers_of(0)) == []
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 from itertools import combinations, pairwise
 from operator import eq, ne
 
@@ -13,10 +14,13 @@ from benchmarks.search.families.graphs import colouring
 from benchmarks.search.families.scaling import distinct
 from benchmarks.search.families.wiring import counted, in_pairs, iri, profile
 from selfconf.model.partition import ANY_VALUE, Candidate, Partition, Variable
+from selfconf.model.template import Interaction, Role, Task, Template
 from selfconf.search.budget import Budget
+from selfconf.search.engines.conflict_graph import ConflictGraph
 from selfconf.search.engines.encoding import Encoding
 from selfconf.search.engines.exclusion import exclusive_groups
 from selfconf.search.engines.least_solution import least_by_clauses
+from selfconf.search.engines.reduced_search import first_solution
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import ReducedProblem, pruned, reduced
 from tests.search.comparison import least_numbers, numbers
@@ -126,3 +130,53 @@ def test_roles_that_may_agree_on_a_value_do_not_exclude_each_other() -> None:
     site = (Variable(iri("site"), (iri("north"), iri("south"))),)
     parts = [[Candidate(profile(f"{name}{k}"), (1 << k,)) for k in range(2)] for name in "ab"]
     assert not exclusive_groups(pruned(reduced(counted(parts, [1, 1], (), site)))).settled
+
+
+def contested(halls: int, carts: int) -> ReducedProblem:
+    """Carts of one pool, one for each hall, that hear a beacon of the hall and feed a belt, which hears both."""
+    rng = random.Random(halls)
+    pool = [profile(f"cart{k:03}", (f"x{k % 2}",), (f"y{k % 3}", f"y{(k + 1) % 3}")) for k in range(carts)]
+    parts, links = list[tuple[Candidate, ...]](), list[Interaction]()
+    for hall in range(halls):
+        beacon, cart, belt = (iri(f"role{3 * hall + k}") for k in range(3))
+        parts += [
+            tuple(Candidate(profile(f"beacon{hall}.{k}", (), (f"x{k}", f"z{k}"))) for k in range(2)),
+            tuple(Candidate(some) for some in rng.sample(pool, 3)),
+            tuple(Candidate(profile(f"belt{hall}.{k}", (f"y{k}", f"z{k % 2}"))) for k in range(3)),
+        ]
+        links += [Interaction(beacon, cart), Interaction(cart, belt, None, "i0"), Interaction(beacon, belt, None, "i1")]
+    template = Template(iri("template"), tuple(Role(iri(f"role{k}")) for k in range(len(parts))), tuple(links))
+    return pruned(reduced(Problem(Task(template), Partition(tuple(parts)))))
+
+
+def test_components_are_groups_as_they_stand_where_roles_that_share_them_do_not_feed_each_other(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(ConflictGraph, "add_components", lambda _: pytest.fail("components were entered pair by pair"))
+    given_ = contested(4, 9)
+    found = exclusive_groups(given_)
+    assert found.stated
+    options = [option for some in given_.options for option in some]
+    playing = [number for number, option in enumerate(options) if "cart" in option.component]
+    for one, other in combinations(playing, 2):
+        if options[one].component == options[other].component:
+            assert any({one, other} <= set(group) for group in found.groups)
+
+
+def test_components_of_roles_that_feed_each_other_are_part_of_the_graph(monkeypatch: pytest.MonkeyPatch) -> None:
+    entered = list[bool]()
+    add = ConflictGraph.add_components
+    monkeypatch.setattr(ConflictGraph, "add_components", lambda graph: entered.append(True) or add(graph))
+    pairs = in_pairs([range(4)] * 3, dict.fromkeys(combinations(range(3), 2), ne))
+    both = Candidate(profile("both"))
+    parts = [(*some, both) if role < 2 else some for role, some in enumerate(pairs.candidates)]
+    exclusive_groups(reduced(Problem(pairs.task, Partition(tuple(parts)))))
+    assert entered
+
+
+@pytest.mark.parametrize("halls", range(2, 6))
+def test_contested_components_are_shared_out_as_the_oracle_does(halls: int) -> None:
+    pytest.importorskip("pysat")
+    for carts in range(halls, halls + 4):
+        problem = contested(halls, max(carts, 3))
+        assert numbers(least_by_clauses(problem, Budget())) == numbers(first_solution(problem, Budget()))
