@@ -11,11 +11,29 @@ from selfconf.model.diagnostic import Diagnostic
 from selfconf.rdf.validation.lints.descriptions import local_components, repeated_descriptions
 from selfconf.rdf.validation.lints.flow import idle_loops, starving_inputs
 from selfconf.rdf.validation.lints.hierarchies import circular_hierarchies, mixed_hierarchies, unlisted_members
+from selfconf.rdf.validation.lints.impossible_shapes import impossible_inputs, impossible_roles, nameless_values
 from selfconf.rdf.validation.lints.linted_file import LintedFile
 from selfconf.rdf.validation.lints.literals import literals_for_iris, literals_for_terms, unfit_literals
 from selfconf.rdf.validation.lints.misplaced_terms import misplaced_terms, templates_as_groundings
+from selfconf.rdf.validation.lints.parameters import (
+    borrowed_parameters,
+    queried_parameters,
+    unlisted_parameters,
+    unused_parameters,
+)
 from selfconf.rdf.validation.lints.ports import ownerless_ports, typed_operations, untyped_ports
 from selfconf.rdf.validation.lints.prefixes import prefixes, prefixes_of_queries, undeclared_prefixes
+from selfconf.rdf.validation.lints.roles import (
+    idle_words,
+    paths_from_components,
+    properties_of_roles,
+    signals_for_components,
+    typed_roles,
+    undescribed_shapes,
+    unjoined_optional_roles,
+    unlisted_roles,
+    unselective_roles,
+)
 from selfconf.rdf.validation.lints.signal_classes import (
     components_as_signals,
     misplaced_classes_in_shapes,
@@ -26,24 +44,6 @@ from selfconf.rdf.validation.lints.sources import (
     misnamed_units,
     paths_from_outputs,
     unmet_shapes,
-)
-from selfconf.rdf.validation.lints.templates import (
-    borrowed_parameters,
-    idle_words,
-    impossible_inputs,
-    impossible_roles,
-    nameless_values,
-    paths_from_components,
-    properties_of_roles,
-    queried_parameters,
-    signals_for_components,
-    typed_roles,
-    undescribed_shapes,
-    unjoined_optional_roles,
-    unlisted_parameters,
-    unlisted_roles,
-    unselective_roles,
-    unused_parameters,
 )
 from selfconf.rdf.validation.lints.terms import (
     classes_as_properties,

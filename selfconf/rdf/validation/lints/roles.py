@@ -1,4 +1,4 @@
-"""What is well-formed in a template and probably not what was meant: roles in no list, or that nothing can play."""
+"""The lints about roles: such as stand in no list, and shapes of roles that do not ask for what was meant."""
 
 from __future__ import annotations
 
@@ -19,10 +19,7 @@ from selfconf.rdf.permitted_fields import (
     SHAPE_VALUED,
 )
 from selfconf.rdf.validation.lints.contradictions import (
-    ShapeContradiction,
-    contradictions,
     entails,
-    excluded_values,
 )
 from selfconf.rdf.validation.lints.linted_file import LintedFile
 from selfconf.rdf.validation.lints.normal_form import NormalForm
@@ -104,7 +101,7 @@ def _kind(file: LintedFile, shape: Node) -> str:
 def undescribed_shapes(file: LintedFile) -> Iterator[Diagnostic]:
     """Classes, and what is not described at all, where roles name a shape: everything meets what asks for nothing."""
     roles = set(file.graph.subjects(RDF.type, URIRef(SC.Role)))
-    for statement in {one for role in roles for one in _said_for(file, role)}:
+    for statement in {one for role in roles for one in said_for(file, role)}:
         for shape in _shapes_named(file, [statement]):
             if str(statement[1]) == SC.recruits or not isinstance(shape, URIRef) or _is_shape(file, shape):
                 continue
@@ -152,7 +149,7 @@ def _roles_and_components(file: LintedFile) -> set[Node]:
 def _told_otherwise(file: LintedFile) -> Iterator[tuple[Node, URIRef, URIRef]]:
     """Each role, or shape in one, with a class of components that it names but for `sh:class`, and by what."""
     roles = set(file.graph.subjects(RDF.type, URIRef(SC.Role)))
-    said_of_roles = [one for role in roles for one in _said_for(file, role)]
+    said_of_roles = [one for role in roles for one in said_for(file, role)]
     for role in roles | _shapes_named(file, said_of_roles):
         asked = role not in roles or (role, SH["class"], None) in file.graph
         for said, ignored in ((RDF.type, False), (SH.targetClass, asked)):
@@ -209,31 +206,7 @@ def signals_for_components(file: LintedFile) -> Iterator[Diagnostic]:
                 yield file.at(file.positions.triples[statement].object, "SC-L28", message, hint=hint)
 
 
-def unlisted_parameters(file: LintedFile) -> Iterator[Diagnostic]:
-    """Parameters that no template has."""
-    listed = set(file.graph.objects(None, URIRef(SC.parameter)))
-    for parameter in set(file.graph.subjects(RDF.type, URIRef(SC.Parameter))) - listed:
-        message = "No template has this parameter, so it stands for itself and never for a value."
-        hint = f"Say sc:parameter {file.short(str(parameter))} of its template."
-        yield file.at(file.offset(parameter), "SC-L15", message, hint=hint)
-
-
-def borrowed_parameters(file: LintedFile) -> Iterator[Diagnostic]:
-    """Parameters of one template that a role of another mentions, which has not listed them."""
-    graph = file.graph
-    owners: dict[Node, set[Node]] = {}
-    for template, parameter in graph.subject_objects(URIRef(SC.parameter)):
-        owners.setdefault(parameter, set()).add(template)
-    for template, head in graph.subject_objects(URIRef(SC.roles)) if owners else ():
-        for mention in {one for role in file.items(head) for one in _said_for(file, role)}:
-            if template not in owners.get(mention[2], {template}) and mention in file.positions.triples:
-                short, of = file.short(str(mention[2])), file.short(str(template))
-                message = f"{of} has no parameter {short}, so for it this stands for itself and never for a value."
-                hint = f"Say sc:parameter {short} of {of} as well."
-                yield file.at(file.positions.triples[mention].object, "SC-L15", message, hint=hint)
-
-
-def _said_for(file: LintedFile, role: Node) -> Iterator[tuple[Node, Node, Node]]:
+def said_for(file: LintedFile, role: Node) -> Iterator[tuple[Node, Node, Node]]:
     """The statements that make up what a role asks for, sets and recruits, also in shapes with names."""
     seen, waiting = {role}, [role]
     while waiting:
@@ -269,7 +242,7 @@ def idle_words(file: LintedFile) -> Iterator[Diagnostic]:
     In shapes that are no roles this goes for all words of selfconf as well.
     """
     roles = set(file.graph.subjects(RDF.type, URIRef(SC.Role)))
-    said = {one for role in roles for one in _said_for(file, role)}
+    said = {one for role in roles for one in said_for(file, role)}
     shapes = roles | _shapes_named(file, said)
     for shape, predicate, value in said:
         word = str(predicate)
@@ -287,98 +260,3 @@ def _shapes_named(file: LintedFile, said: Iterable[tuple[Node, Node, Node]]) -> 
     leading = {(str(predicate), value) for _, predicate, value in said}
     named = {value for predicate, value in leading if predicate in (SC.recruits, *SHAPE_VALUED)}
     return named | {shape for predicate, head in leading if predicate in LISTS_OF_SHAPES for shape in file.items(head)}
-
-
-def unused_parameters(file: LintedFile) -> Iterator[Diagnostic]:
-    """Parameters that no role mentions."""
-    graph = file.graph
-    for parameter in graph.objects(None, URIRef(SC.parameter)):
-        uses = [predicate for _, predicate in graph.subject_predicates(parameter)]
-        having = graph.subjects(URIRef(SC.parameter), parameter)  # a binding names it, too
-        owners = [owner for owner in having if (owner, RDF.type, URIRef(SC.Template)) in graph]
-        if owners and all(str(predicate) == SC.parameter for predicate in uses):
-            offset = min(file.positions.triples[owner, URIRef(SC.parameter), parameter].object for owner in owners)
-            message = f"No role mentions the parameter {file.short(str(parameter))}."
-            yield file.at(offset, "SC-L10", message)
-
-
-def queried_parameters(file: LintedFile) -> Iterator[Diagnostic]:
-    """Parameters in the text of a query, which is taken as it stands."""
-    parameters = {str(one) for one in file.graph.objects(None, URIRef(SC.parameter)) if isinstance(one, URIRef)}
-    for predicate in (SH.select, SH.ask) if parameters else ():
-        for subject, query in file.graph.subject_objects(predicate):
-            for parameter in sorted(parameters & file.named_in_query(str(query))):
-                short = file.short(parameter)
-                message = f"The parameter {short} stands for itself in a query, and never for a value."
-                hint = f"Ask for its value beside the query, as by sh:in ( {short} )."
-                offset = file.positions.triples[subject, predicate, query].object
-                yield file.at(offset, "SC-L16", message, hint=hint)
-
-
-def impossible_roles(file: LintedFile) -> Iterator[Diagnostic]:
-    """Roles, or what they recruit, whose shapes contradict themselves or what holds of every advertisement."""
-    always = list(file.source.applied(SH.targetClass, URIRef(SC.Component)))
-    for role in set(file.graph.subjects(RDF.type, URIRef(SC.Role))):
-        short = file.short(str(role))
-        normal = NormalForm(file.source, (role, *always))
-        for conflict in contradictions(normal):
-            yield _contradiction(file, role, conflict, f"no component can play the role {short}", "SC-L11")
-        for conflict in excluded_values(normal):
-            if not file.positions.triples.keys().isdisjoint(conflict):
-                effect = f"only a component without such a value can play the role {short}"
-                yield _contradiction(file, role, conflict, effect, "SC-L11")
-        for shape in file.graph.objects(role, URIRef(SC.recruits)):
-            for conflict in (
-                () if isinstance(shape, Literal) else contradictions(NormalForm(file.source, (shape, *always)))
-            ):
-                effect = f"no component can be recruited for the role {short}"
-                yield _contradiction(file, shape, conflict, effect, "SC-L19")
-
-
-def nameless_values(file: LintedFile) -> Iterator[Diagnostic]:
-    """Lists and nodes in brackets as the value that a shape asks for: no component of another file has it."""
-    for shape, value in file.graph.subject_objects(SH.hasValue):
-        if isinstance(value, BNode):
-            is_list = (value, RDF.first, None) in file.graph
-            hint = "Of several values any one is sh:in ( ... )." if is_list else "Name it by an IRI."
-            message = (
-                f"This is a {'list' if is_list else 'node'} of this file alone, so no component has it as a value."
-            )
-            yield file.at(file.positions.triples[shape, SH.hasValue, value].object, "SC-L11", message, hint=hint)
-
-
-def impossible_inputs(file: LintedFile) -> Iterator[Diagnostic]:
-    """What inputs accept that contradicts itself, or what holds of every output."""
-    always = list(file.source.applied(SH.targetObjectsOf, URIRef(SC.hasOutput)))
-    for shape in set(file.graph.objects(None, URIRef(SC.accepts))):
-        normal = NormalForm(file.source, (shape, *always))
-        for conflict in contradictions(normal):
-            yield _contradiction(file, shape, conflict, "no output can feed this input", "SC-L22")
-        for conflict in excluded_values(normal):
-            if not file.positions.triples.keys().isdisjoint(conflict):
-                effect = "only an output without such a value can feed this input"
-                yield _contradiction(file, shape, conflict, effect, "SC-L22")
-
-
-def _contradiction(file: LintedFile, shape: Node, conflict: ShapeContradiction, effect: str, code: str) -> Diagnostic:
-    """The later of two statements, with the place of the earlier; `effect` is what follows from both."""
-    places = {one: file.positions.triples[one].predicate for one in conflict if one in file.positions.triples}
-    later = max(places, key=lambda one: places[one], default=conflict.one)
-    earlier = conflict.other if later == conflict.one else conflict.one
-    offset = places.get(later, file.offset(shape))
-    hint = None
-    if later == earlier and isinstance(later[2], Literal):
-        message = f"No value meets {file.said(later)}, so {effect}."
-    elif later == earlier:
-        what = "No alternative of this can hold" if later[1] in (SH["or"], SH.xone) else "This cannot hold"
-        message = f"{what} beside what else is asked for, so {effect}."
-    elif earlier in places:
-        there, here = file.positions.place(places[earlier]), file.positions.place(offset)
-        where = f"line {there.line}" if there.line != here.line else f"column {there.column}"
-        message = f"{file.said(later)} and {file.said(earlier)} ({where}) exclude each other, so {effect}."
-    else:
-        always = next(iter(file.source.values(earlier[0], SH.message)), "All advertisements differ from this.")
-        message = f"{file.said(later)} cannot hold of any advertisement, so {effect}. {always}"
-    if SH.closed in (later[1], earlier[1]):
-        hint = "List what else a component may say in sh:ignoredProperties, at least rdf:type."
-    return file.at(offset, code, message, hint=hint)
