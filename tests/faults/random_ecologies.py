@@ -2,7 +2,7 @@
 
 Sources feed what converts their signals, in a circle at times, and that feeds actuators. Roles are of one component or
 of several, inputs may be optional, components may be shared, tolerate to be blind, have a parameter, offer an operation
-or need one, and a composite may stand for a source. The number of an ecology decides all of it; `tests.faults.replay`
+or need one, and a composite may stand for a source, or for what converts signals. The number of an ecology decides all of it; `tests.faults.replay`
 plays a history in it by `--ecology random-NUMBER`.
 """
 
@@ -67,7 +67,7 @@ def random_ecology(number: int) -> FaultyEcology:
     whole = _needed(kinds, [kind for kind in kinds if not kind.outputs])
     part = _needed(kinds, [chance.choice([kind for kind in whole if kind.inputs])])
     advertisements = {name: text for kind in kinds for name, text in _advertisements(chance, kind)}
-    composite = _composite(chance, whole)
+    composite = _composite(chance, whole) or _converting_composite(random.Random(f"composite {number}"), whole)
     advertisements |= composite
     sites: dict[str, list[str]] = {}
     places = ("hall", "kitchen", "garden")[: chance.choice((1, 2, 2, 3))]
@@ -227,4 +227,29 @@ def _composite(chance: random.Random, kinds: Sequence[Kind]) -> dict[str, str]:
 :find a sc:Template ; sc:roles ( :eye :finder ) ; {port} ; sc:of :finder ] .
 :eye a sc:Role ; sh:class :Eye ; sc:feeds :finder .
 :finder a sc:Role ; sh:class :Finder ."""
+    return {**inner, "service": service}
+
+
+def _converting_composite(chance: random.Random, kinds: Sequence[Kind]) -> dict[str, str]:
+    """In some ecologies a composite that can stand for what converts signals, and what it is made of."""
+    plain = [kind for kind in kinds if kind.inputs and len(kind.outputs) == 1]
+    plain = [kind for kind in plain if not (kind.settable or kind.offers or kind.needs)]
+    if not plain or chance.random() < 0.5:
+        return {}
+    kind = chance.choice(plain)
+    shareable = " ; sc:shareable true" if kind.shareable else ""
+    inputs, of_inner = "", ""
+    for one in kind.inputs:
+        port = f'sc:hasInput [ sc:name "{one.port}" ; sc:signalType {one.signal}'
+        inputs += f"{port}{' ; sc:optional true' if one.optional else ''} ] ; "
+        of_inner += f"{port} ; sc:of :worker ] ; "
+    output = f'sc:hasOutput [ sc:name "out0" ; sc:signalType {kind.outputs[0]}'
+    inner = {
+        f"worker-{number}": f":worker-{number} a sc:Component, :Worker{shareable} ; {inputs}{output} ] ."
+        for number in range(1, chance.choice((2, 3)))
+    }
+    service = f""":service a sc:Component, :{kind.name}{shareable} ; sc:preference {chance.choice((5, -5))} ;
+    {inputs}{output} ] ; sc:grounding [ sc:template :convert ] .
+:convert a sc:Template ; sc:roles ( :worker ) ; {of_inner}{output} ; sc:of :worker ] .
+:worker a sc:Role ; sh:class :Worker ."""
     return {**inner, "service": service}
