@@ -70,7 +70,10 @@ class QueueFor:
 
 @immutable
 class Decline:
-    """Tell a component that is kept for this task, and that it cannot take now, to go to the next that waits."""
+    """Tell a component that is kept for this task, and that it cannot take now, to go to the next that waits.
+
+    Or one that it has reserved, where another configurator goes on with the task.
+    """
 
     component: IRI
     epoch: int

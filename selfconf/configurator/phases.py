@@ -141,10 +141,13 @@ def queue(state: State) -> Reaction:
 def stand_down(state: State) -> Reaction:
     """Another configurator goes on with this task: leave everything as it is to that one.
 
-    But for what is not needed any more, of which that one does not know.
+    But for what is not needed any more, and what does not act yet, of which that one does not know: it would wait until
+    the component has let go of a configurator that it may never have seen.
     """
     state, releases = release_rest(state) if state.phase is Phase.RUNNING else (state, ())
-    effects: list[Effect] = [*releases, *(Unwatch(component) for component in sorted(state.watched))]
+    fresh = (component for component, held in state.held.items() if held.may_be_held and not held.active)
+    effects: list[Effect] = [*releases, *(Decline(component, state.epoch) for component in sorted(fresh))]
+    effects += (Unwatch(component) for component in sorted(state.watched))
     left = replace(
         state,
         phase=Phase.STOPPED,

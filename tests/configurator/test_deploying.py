@@ -9,6 +9,7 @@ import pytest
 from selfconf.configurator.effects import (
     ApplyTo,
     Compose,
+    Decline,
     Discover,
     Finish,
     ReleaseFrom,
@@ -280,6 +281,17 @@ def test_a_task_that_is_handed_over_is_left_as_it_runs() -> None:
     assert kinds(history.hear(HandedOver())) == [Unwatch] * 3 + [Finish]
     assert (history.state.phase, dict(history.state.held), dict(history.state.owed)) == (Phase.STOPPED, {}, {})
     assert history.hear(HandedOver()) == []
+
+
+def test_what_does_not_act_yet_is_let_go_of_where_another_configurator_goes_on_with_the_task() -> None:
+    history = History(TASK).accepted()
+    history.composed(navigation())
+    history.all_answer(Call.WAKE)
+    history.answer(CONTROL, Call.RESERVE)
+    effects = history.answer(DRIVE, Call.RESERVE, Verdict.BUSY, holder=replace(OTHERS, task=TASK.task))
+    declined = [effect.component for effect in effects if isinstance(effect, Decline)]
+    assert declined == [CONTROL]
+    assert effects[-1] == Finish()
 
 
 # What is not done.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
@@ -13,9 +14,9 @@ import pytest
 from selfconf.bus.memory import Faults, MemoryBus
 from selfconf.configurator import ApplyTo
 from selfconf.configurator.state import Phase
-from selfconf.deployment import RunRequest
+from selfconf.deployment import RunRequest, TaskRunner
 from selfconf.deployment.configuration_record import recorded_configuration
-from selfconf.deployment.keeper import keeper_of
+from selfconf.deployment.keeper import KEEPER_AGAIN, keeper_of
 from selfconf.errors import TemplateError
 from selfconf.model.configuration import Configuration
 from selfconf.protocol.messages import TaskRecord
@@ -298,3 +299,24 @@ def test_the_time_to_go_on_with_tasks_does_not_grow_with_their_square(
     assert tasks <= {task for one in keepers.keepers.values() for task in one.runners}
     assert len(read) <= 3 * len(tasks), "of what others go on with at the same moment some is read as well"
     assert all(recorder.said == [("started",)] for recorder in lab.components.values())
+
+
+@pytest.mark.parametrize("seed", [3, 19, 65])
+def test_several_configurators_that_begin_one_task_in_the_same_moment_settle_at_once(tmp_path: Path, seed: int) -> None:
+    """Of those that find another one in their way none leaves reservations behind by which others are in the way."""
+    lab, chance = Lab(tmp_path, seed, Faults(most_delay=0.005)), random.Random(seed)
+    lab.navigation()
+    lab.let_pass(2.5)
+    begun: list[TaskRunner] = []
+
+    def begin(number: int) -> None:
+        node = lab.network.node()
+        request = replace(request_for(RECORD), ended=lambda _: node.later(KEEPER_AGAIN, partial(begin, number)))
+        name, clock = f"agent{number}-{len(lab.network.nodes)}", lambda: lab.network.time
+        begun.append(TaskRunner(node, "lab", request, name, clock, RECORD.task, RECORD.beginning))
+        begun[-1].start()
+
+    for number in range(3):
+        lab.network.node().later(chance.uniform(0.0, 0.02), partial(begin, number))
+    assert lab.until(lambda: any(one.state.phase is Phase.RUNNING for one in begun), 0.5)
+    assert lab.active() == TASK | {"tracker"}

@@ -126,7 +126,7 @@ class Calls:
         self._calling.ask(component, message, answered)
 
     def decline(self, effect: Decline) -> None:
-        """Let a component that is kept for this task go to the next that waits; nothing depends on the answer."""
+        """Let a component that is kept for this task, and does not act for it, go; nothing depends on the answer."""
         message = Release(**self._calling.claim(effect.component, effect.epoch))
         self._calling.ask(effect.component, message)
 
