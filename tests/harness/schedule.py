@@ -8,6 +8,7 @@ INHABITED = "inhabited"
 """The fixture that starts a site and seven components: once is enough."""
 WHOLE = {
     "tests/access/test_intruder.py",
+    "tests/cli/test_access.py",
     "tests/api/test_ecology.py",
     "tests/api/living/test_living_ecology.py",
     "tests/api/tasks/test_run.py",
@@ -19,6 +20,7 @@ WHOLE = {
     "tests/sim/test_pictures.py",
     "tests/sim/test_rehearsal.py",
     "tests/docs/test_ci_for_users.py",
+    "tests/docs/test_reasoning.py",
     "tests/test_house.py",
     "tests/examples/test_notebook.py",
 }
