@@ -32,6 +32,13 @@ _ADVICE = (
     ("'[\u2010-\u2015\u2212]' is not allowed", "A minus is written -."),
     (r"'[\s\u200b]' is not allowed", "This is a special blank, such as the no-break space; write a plain one."),
     ("'/' is not allowed", r"A comment begins with #; in a name behind a prefix / is written \/."),
+    (r"^\^\^ is not", "A text has a language or a datatype, not both."),
+    ("without a language tag", 'Write the language in place of the datatype, as in "Tor"@de.'),
+    ("language code should", 'Behind @ stands a language, as in "Tor"@de.'),
+    (
+        r"^Unexpected character '\w'",
+        'A blank node is written _:name, and a language that has two parts with a hyphen, as in "Tor"@de-AT.',
+    ),
     ("Unexpected escape character", r"A backslash in a string is written \\."),
     ("declaration should be followed by a prefix and its value", "An IRI stands in angle brackets: <https:...>."),
     ("Unexpected end of file", "Perhaps a closing quotation mark or a > is missing."),

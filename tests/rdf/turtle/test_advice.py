@@ -31,6 +31,16 @@ SLIPS = [
     ("PREFIX : <urn:x> . <urn:a> a :b .", "Perhaps a dot is too many; behind PREFIX, unlike @prefix, there is none."),
     ("<urn:a> <urn:p>\u00a01 .", "This is a special blank, such as the no-break space; write a plain one."),
     ("<urn:a> <urn:p> \u22121 .", "A minus is written -."),
+    ("<urn:a> <urn:p> 'x'@de^^<urn:d> .", "A text has a language or a datatype, not both."),
+    ("<urn:a> <urn:p> 'x'@ .", 'Behind @ stands a language, as in "Tor"@de.'),
+    (
+        "<urn:a> <urn:p> 'x'^^<http://www.w3.org/1999/02/22-rdf-syntax-ns#langString> .",
+        'Write the language in place of the datatype, as in "Tor"@de.',
+    ),
+    (
+        "<urn:a> <urn:p> 'x'@de_DE .",
+        'A blank node is written _:name, and a language that has two parts with a hyphen, as in "Tor"@de-AT.',
+    ),
     ("// <urn:a> a <urn:b> .", r"A comment begins with #; in a name behind a prefix / is written \/."),
 ]
 
