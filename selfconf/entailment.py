@@ -19,12 +19,14 @@ from typing import TypeVar
 
 from selfconf.atomic_write import write_atomically
 from selfconf.errors import AuthorError
+from selfconf.model.literal_values import number_of
 from selfconf.model.seconds import LIMIT_IN_WORDS, is_limit
 from selfconf.model.setting_names import setting
 from selfconf.model.term import BlankNode, Term
 from selfconf.module_command import module_command
 from selfconf.rdf import reasoning, turtle
 from selfconf.rdf.turtle import Triple, ntriples
+from selfconf.rdf.vocabulary import XSD
 
 T = TypeVar("T", bound=Term)
 
@@ -84,10 +86,9 @@ def _relabelled(triples: Iterable[Triple]) -> Iterator[Triple]:
 def _limit() -> float:
     """The seconds that a closure may take. Raises AuthorError for a setting that is no limit."""
     given = os.environ.get("SELFCONF_OWL_RL_SECONDS", str(LIMIT))
-    try:
-        seconds = float(given)
-    except ValueError:
-        seconds = 0.0
+    seconds = float(
+        number_of(given, XSD.double) or 0
+    )  # Python's own `float` takes `1_0` and the digits of every script
     if not is_limit(seconds):
         raise AuthorError(f"SELFCONF_OWL_RL_SECONDS is {LIMIT_IN_WORDS}, not {given!r}")
     return seconds

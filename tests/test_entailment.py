@@ -82,7 +82,7 @@ def test_a_closure_that_cannot_be_kept_leaves_no_half_of_it_behind(
     assert list(kept.parent.iterdir()) == [kept]
 
 
-@pytest.mark.parametrize("given", ["abc", "0", "-1", "nan", "inf", ""])
+@pytest.mark.parametrize("given", ["abc", "0", "-1", "nan", "inf", "", "1_0", "\u0661"])
 def test_a_limit_that_is_no_time_is_a_sentence(given: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SELFCONF_OWL_RL_SECONDS", given)
     with pytest.raises(
