@@ -2,8 +2,8 @@
 
 Sources feed what converts their signals, in a circle at times, and that feeds actuators. Roles are of one component or
 of several, inputs may be optional, components may be shared, tolerate to be blind, have a parameter, offer an operation
-or need one, and a composite may stand for a source, or for what converts signals. The number of an ecology decides all of it; `tests.faults.replay`
-plays a history in it by `--ecology random-NUMBER`.
+or need one, and a composite may stand for a source, or for what converts signals. The number of an ecology decides all
+of it; `tests.faults.replay` plays a history in it by `--ecology random-NUMBER`.
 """
 
 from __future__ import annotations
