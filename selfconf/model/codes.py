@@ -670,7 +670,8 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "SC-L23", "A unit is called as QUDT calls it.",
-        "Two ports agree in their units if these have one name, and only QUDT's names tell what a unit measures.",
+        "Two ports agree in their units if these have one name, and only QUDT's names tell what a unit measures. It is "
+        "the value of sc:unit: what a port says by qudt:hasUnit and the like keeps no two ports apart.",
         f'{_TUNER} ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ; sc:unit unit:metre ] .',
         f'{_TUNER} ; sc:hasOutput [ sc:name "sound" ; sc:signalType rob:Audio ; sc:unit unit:M ] .',
         severity=Severity.WARNING,
@@ -746,6 +747,24 @@ CODES: tuple[Code, ...] = (
         "file is given as an ontology, or is validated beside this one.",
         "<https://example.org/home> a owl:Ontology ; owl:imports <https://example.org/base> .",
         "<https://example.org/home> a owl:Ontology ; owl:imports <https://w3id.org/selfconf/robotics> .",
+        severity=Severity.WARNING,
+    ),
+    Code(
+        "SC-L34", "The query of a shape asks about $this.",
+        "SHACL asks a query of sh:sparql with the component for $this, and a row of its answer is a violation. One "
+        "whose pattern does not mention $this has the same answer for every component.",
+        f'{_PAIR}\n:sink sh:sparql [ sh:select """SELECT $this {{\n'
+        '    $This <https://w3id.org/selfconf/robotics#place> ?room }""" ] .',
+        f'{_PAIR}\n:sink sh:sparql [ sh:select """SELECT $this {{\n'
+        '    $this <https://w3id.org/selfconf/robotics#place> ?room }""" ] .',
+        severity=Severity.WARNING,
+    ),
+    Code(
+        "SC-L35", "Alternatives stand in one list.",
+        "A shape may have several sh:or and sh:xone, and all of them have to hold. So each of them with one shape in "
+        "it is no alternative to the others.",
+        f"{_PAIR}\n:sink sh:or ( [ sh:class rob:Speaker ] ) , ( [ sh:class rob:Display ] ) .",
+        f"{_PAIR}\n:sink sh:or ( [ sh:class rob:Speaker ] [ sh:class rob:Display ] ) .",
         severity=Severity.WARNING,
     ),
     Code(

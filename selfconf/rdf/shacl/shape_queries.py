@@ -2,7 +2,8 @@
 
 Beside what keeps a text from being a query at all, three mistakes make one that finds nothing, so that every component
 conforms: a prefix that is not declared as its author believes, a pattern of REGEX or REPLACE that is no regular
-expression, and flags that rdflib passes over. They are looked for where a query has them as constants.
+expression, and flags that rdflib passes over. They are looked for where a query has them as constants,
+in one text or in several that CONCAT joins.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ DECLARATION = "a node with one sh:prefix and one sh:namespace, which is an absol
 _FLAGS = "ims"
 """The flags of SPARQL (XPath, 7.6.1.1) that rdflib knows."""
 _CALL = re.compile(r"(?<![\w?$@:.-])(REGEX|REPLACE)\s*\(", re.IGNORECASE)
+_CONCAT = re.compile(r"CONCAT\s*\(", re.IGNORECASE)
 _PLACE_OF_FLAGS = {"REGEX": 2, "REPLACE": 3}
 _ABSOLUTE = re.compile(r"[A-Za-z][\w+.-]*:")
 
@@ -96,22 +98,39 @@ def _calls(text: str) -> Iterator[tuple[str, list[tuple[int, str]]]]:
     """The calls of REGEX and REPLACE in a query: which it is, and its arguments, each with its offset."""
     bare = hidden(text)
     for call in _CALL.finditer(bare):
-        begin, depth, arguments = call.end(), 0, list[tuple[int, str]]()
-        for offset in range(begin, len(bare)):
-            mark = bare[offset]
-            if depth == 0 and mark in ",)":
-                argument = text[begin:offset]
-                arguments.append((begin + len(argument) - len(argument.lstrip()), argument.strip()))
-                begin = offset + 1
-                if mark == ")":
-                    break
-            depth += (mark in "([{") - (mark in ")]}")
-        yield call[1].upper(), arguments
+        yield call[1].upper(), _arguments(text, bare, call.end())[0]
+
+
+def _arguments(text: str, bare: str, begin: int) -> tuple[list[tuple[int, str]], int]:
+    """The arguments of a call behind its opening bracket, each with its offset, and where the call ends.
+
+    `bare` is the text without strings, IRIs and comments.
+    """
+    depth, arguments = 0, list[tuple[int, str]]()
+    for offset in range(begin, len(bare)):
+        mark = bare[offset]
+        if depth == 0 and mark in ",)":
+            argument = text[begin:offset]
+            arguments.append((begin + len(argument) - len(argument.lstrip()), argument.strip()))
+            begin = offset + 1
+            if mark == ")":
+                break
+        depth += (mark in "([{") - (mark in ")]}")
+    return arguments, begin
 
 
 def _constant(expression: str) -> str | None:
-    """The text that an expression is, if it is a literal: to evaluate others could take as long as they like."""
-    if not expression.startswith(("'", '"')) or hidden(expression).strip():
+    """The text that an expression is, if it is a literal, or CONCAT of such.
+
+    To evaluate others could take as long as they like.
+    """
+    bare = hidden(expression)
+    if (joining := _CONCAT.match(bare)) is not None:
+        arguments, end = _arguments(expression, bare, joining.end())
+        texts = [_constant(argument) for _, argument in arguments if not bare[end:].strip()]
+        known = [text for text in texts if text is not None]
+        return "".join(known) if texts and len(known) == len(texts) else None
+    if not expression.startswith(("'", '"')) or bare.strip():
         return None
     try:
         answer = ox.Store().query(f"SELECT ?value {{ VALUES ?value {{ {expression} }} }}")

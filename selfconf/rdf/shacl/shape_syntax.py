@@ -76,7 +76,7 @@ WANTED: dict[IRI, str] = {
     SH.property: "a property shape, which has one sh:path",
     SH.pattern: "a regular expression",
     SH.path: "a property or a path of properties, of which two at least stand in parentheses",
-    SH.sparql: "a constraint with a SPARQL query that asks no other machine",
+    SH.sparql: "a constraint with one sh:select; sh:ask belongs to the validators of constraint components",
 }
 """What the value of each property has to be, in words."""
 

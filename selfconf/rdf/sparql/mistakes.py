@@ -9,7 +9,7 @@ import pyoxigraph as ox
 
 from selfconf.model.curie import SCHEMES
 from selfconf.rdf.sparql.prologue import PROLOGUE
-from selfconf.rdf.sparql.read_only import fault, hidden, without
+from selfconf.rdf.sparql.read_only import fault, hidden, says, without
 
 BEGINNINGS = ("PREFIX", "BASE", "SELECT", "ASK", "CONSTRUCT", "DESCRIBE")
 _DECLARED = re.compile(r"\bprefix\s+([^\s:]*)\s*:", re.IGNORECASE)
@@ -19,6 +19,8 @@ _COMPLAINT = re.compile(r"error at (\d+):(\d+): expected (?:one of )?(.*)", re.D
 _SENTENCE = re.compile(r"(?:^|, )([A-Z][A-Za-z]*(?: [A-Za-z*]+){2,})(?=,|$)")
 _THIS = ox.Variable("this")
 _PAIRS = {"(": ")", "[": "]", "{": "}"}
+_LEFT_OUT = {"MINUS": "FILTER NOT EXISTS { ... }", "VALUES": "FILTER (?value IN (...))"}
+"""What the query of a shape may not have (SHACL, 5.3.1), each with what to write for it."""
 LONGEST_EXCERPT = 30
 """Characters of the query that are shown."""
 
@@ -38,6 +40,9 @@ def why_not_asked(text: str, prefixes: Mapping[str, str], word: str = "select") 
         return f"This is not SPARQL: {mistake(text, str(error), prefixes)}."
     except RuntimeError as error:  # it calls a function that is not there
         return f"This query cannot be answered: {error}."
+    for left_out, instead in _LEFT_OUT.items():
+        if says(text, left_out):
+            return f"The query of a shape has no {left_out} (SHACL, 5.3.1); write {instead}."
     if word == "ask":
         return None if isinstance(answer, ox.QueryBoolean) else "The value of sh:ask has to be an ASK query."
     if not isinstance(answer, ox.QuerySolutions) or _THIS not in answer.variables:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -21,7 +21,7 @@ from selfconf.model.term import IRI
 from selfconf.model.unit_dimension import meant_unit
 from selfconf.model.wording import is_one_line
 from selfconf.rdf.permitted_fields import COMPONENT, LINKED, OF_COMPONENT, SAID_BY, Field, Subject, foreign_terms
-from selfconf.rdf.vocabulary import OWL, RDF, RDFS, ROB, SC, SH, TYPE, XSD
+from selfconf.rdf.vocabulary import OWL, RDF, RDFS, ROB, SC, SH, TYPE, UNIT, XSD
 
 MOST_PROBLEMS = 100
 """After so many syntax errors a file is taken for something else than Turtle."""
@@ -150,7 +150,7 @@ def prefilter(octets: bytes, base: str | None = None, syntax: ox.RdfFormat = ox.
         found.clear
         and SC.template not in found.used  # a composite has that or a command
         and SC.accepts not in found.used  # a shape that says nothing is none
-        and all(_harmless(properties) and advertisements.rated(properties) for properties in statements.values())
+        and all(_harmless(said) and advertisements.rated(said) for said in statements.values())
         and all(is_one_line(component) and advertisements.clear(component) for component in found.components)
         and _owned(statements)
         and _of_one_unit(statements)
@@ -201,6 +201,8 @@ def _note(found: Prefiltered, subject: str, properties: Properties) -> None:
     for predicate, values in properties.items():
         found.used.add(predicate)
         found.size += len(values)
+        if len(values) > 1 and _of_two_numbers(values):
+            found.clear = False
         for value in values:
             if isinstance(value, Lexical):
                 found.literals.add((predicate, value.datatype, "" if value.datatype in _STRINGS else value.form))
@@ -325,10 +327,23 @@ def _owned(statements: Statements) -> bool:
 
 
 def _of_one_unit(statements: Statements) -> bool:
-    """Whether all ports that state a unit state the same one, not spelt out; others may be of another dimension."""
-    stated = (said for said in statements.values() if SC.unit in said and not _TYPED.isdisjoint(said))
-    units = {unit for said in stated for unit in said[SC.unit]}
-    return len(units) < 2 and all(isinstance(unit, str) and meant_unit(IRI(unit)) is None for unit in units)
+    """Whether all ports that state a unit state the same one, by `sc:unit` and not spelt out.
+
+    Others may be of another dimension.
+    """
+    ports = [said for said in statements.values() if not _TYPED.isdisjoint(said)]
+    units = {unit for said in ports for unit in said.get(SC.unit, ())}
+    otherwise = (said[predicate] for said in ports for predicate in said if predicate not in _PART_TERMS)
+    return (
+        len(units) < 2
+        and all(isinstance(unit, str) and meant_unit(IRI(unit)) is None for unit in units)
+        and not any(isinstance(value, str) and value in UNIT for values in otherwise for value in values)
+    )
+
+
+def _of_two_numbers(values: Iterable[FileTerm]) -> bool:
+    """Whether values are two whole numbers, which may be one that is written with a comma."""
+    return sum(isinstance(one, Lexical) and one.datatype == XSD.integer for one in values) > 1
 
 
 @immutable

@@ -103,7 +103,9 @@ def malformed_roles(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
         shapes.add((shape, RDF.type, SH.PropertyShape if (shape, SH.path, None) in graph else SH.NodeShape))
     faults = [*_with_own_path(shapes, graph, positions), *_literals(shapes, positions)]
     faults += _faults(shapes, graph, positions)
-    faults += [fault for look in (_alone, _languages, _patterns, _queries) for fault in look(graph, positions)]
+    faults += [
+        fault for look in (_alone, _constraints, _languages, _patterns, _queries) for fault in look(graph, positions)
+    ]
     faults += _too_deep(shapes, roles, positions)
     plain = [fault for fault in faults if fault.message != ILL_FORMED]
     yield from plain or faults
@@ -270,6 +272,18 @@ def _literals(shapes: Graph, positions: Positions) -> Iterator[Diagnostic]:
             offsets = positions.triples.get((shape, predicate, value))
             if isinstance(value, Literal) and offsets is not None:
                 yield at(positions, offsets.object, "SC-T13", unfit(IRI.unchecked(predicate)))
+
+
+def _constraints(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:
+    """Values of sh:sparql without a query to ask, and lists of no shapes, which the shape of shapes overlooks."""
+    for shape, constraint in graph.subject_objects(SH.sparql):
+        if len(set(graph.objects(constraint, SH.select))) != 1:
+            offset = positions.triples[shape, SH.sparql, constraint].object
+            yield at(positions, offset, "SC-T13", unfit(IRI.unchecked(SH.sparql)))
+    for predicate in map(URIRef, sorted(LISTS_OF_SHAPES)):
+        for shape in graph.subjects(predicate, RDF.nil):
+            offset = positions.triples[shape, predicate, RDF.nil].object
+            yield at(positions, offset, "SC-T13", unfit(IRI.unchecked(predicate)))
 
 
 def _languages(graph: Graph, positions: Positions) -> Iterator[Diagnostic]:

@@ -63,3 +63,11 @@ def test_a_function_that_is_not_there_is_named() -> None:
     )
     with pytest.raises(QueryError, match="cannot be answered: The custom function <urn:heavy> is not supported"):
         Dataset().query(calls)
+
+
+@pytest.mark.parametrize("part", ["MINUS { $this ?p 2 }", "values ?q { 1 2 }"])
+def test_what_shacl_has_no_place_for_in_a_query_is_named_with_what_to_write(part: str) -> None:
+    said = why_not_asked(f"SELECT $this {{ $this ?p ?q {part} }}", {})
+    assert said is not None
+    assert said.startswith(f"The query of a shape has no {part.split()[0].upper()} (SHACL, 5.3.1); write FILTER ")
+    assert why_not_asked("SELECT $this { $this <urn:values> ?minus # MINUS { }\n}", {}) is None

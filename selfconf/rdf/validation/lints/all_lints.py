@@ -11,7 +11,13 @@ from selfconf.model.diagnostic import Diagnostic
 from selfconf.rdf.validation.lints.descriptions import local_components, repeated_descriptions
 from selfconf.rdf.validation.lints.flow import idle_loops, starving_inputs
 from selfconf.rdf.validation.lints.hierarchies import circular_hierarchies, mixed_hierarchies, unlisted_members
-from selfconf.rdf.validation.lints.impossible_shapes import impossible_inputs, impossible_roles, nameless_values
+from selfconf.rdf.validation.lints.impossible_shapes import (
+    impossible_inputs,
+    impossible_roles,
+    lone_alternatives,
+    nameless_values,
+    queries_about_nothing,
+)
 from selfconf.rdf.validation.lints.linted_file import LintedFile
 from selfconf.rdf.validation.lints.literals import literals_for_iris, literals_for_terms, unfit_literals
 from selfconf.rdf.validation.lints.misplaced_terms import misplaced_terms, templates_as_groundings
@@ -43,6 +49,7 @@ from selfconf.rdf.validation.lints.sources import (
     incommensurable_units,
     misnamed_units,
     paths_from_outputs,
+    units_by_other_words,
     unmet_shapes,
 )
 from selfconf.rdf.validation.lints.terms import (
@@ -78,6 +85,7 @@ WORDS: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
     unfit_literals,
     local_components,
     misnamed_units,
+    units_by_other_words,
     signals_among_types,
     components_as_signals,
     circular_hierarchies,
@@ -99,6 +107,8 @@ TEMPLATES: tuple[Callable[[LintedFile], Iterator[Diagnostic]], ...] = (
     idle_words,
     properties_of_roles,
     queried_parameters,
+    queries_about_nothing,
+    lone_alternatives,
     impossible_roles,
     nameless_values,
     impossible_inputs,

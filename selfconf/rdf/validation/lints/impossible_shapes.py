@@ -1,13 +1,15 @@
-"""The lints about shapes that nothing conforms to: of roles, of what they recruit, and of what inputs accept."""
+"""The lints about shapes that nothing conforms to, or all alike: of roles, recruits, and what inputs accept."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from rdflib import RDF, SH, BNode, Literal, URIRef
 from rdflib.term import Node
 
 from selfconf.model.diagnostic import Diagnostic
+from selfconf.rdf.sparql import hidden
 from selfconf.rdf.validation.lints.contradictions import (
     ShapeContradiction,
     contradictions,
@@ -16,6 +18,32 @@ from selfconf.rdf.validation.lints.contradictions import (
 from selfconf.rdf.validation.lints.linted_file import LintedFile
 from selfconf.rdf.validation.lints.normal_form import NormalForm
 from selfconf.rdf.vocabulary import SC
+
+
+def queries_about_nothing(file: LintedFile) -> Iterator[Diagnostic]:
+    """Queries of constraints whose pattern does not ask about $this: they judge all components alike."""
+    for constraint in set(file.graph.objects(None, SH.sparql)):
+        for query in file.graph.objects(constraint, SH.select):
+            pattern = hidden(str(query)).partition("{")[2]
+            variables = {one[1:] for one in re.findall(r"[?$]\w+", pattern)}
+            if "this" not in variables:
+                alike = sorted(one for one in variables if one.lower() == "this")
+                message = "The pattern of this query does not ask about $this, so it judges all components alike."
+                hint = f"Write $this in place of ${alike[0]}." if alike else "In it $this is the component."
+                offset = file.positions.triples[constraint, SH.select, query].object
+                yield file.at(offset, "SC-L34", message, hint=hint)
+
+
+def lone_alternatives(file: LintedFile) -> Iterator[Diagnostic]:
+    """Several `sh:or`, or `sh:xone`, of one alternative each, of one shape: all of them have to hold."""
+    for predicate in (SH["or"], SH.xone):
+        for shape in set(file.graph.subjects(predicate)):
+            heads = list(file.graph.objects(shape, predicate))
+            if len(heads) > 1 and all(len(list(file.items(head))) == 1 for head in heads):
+                word = file.short(str(predicate))
+                message = f"Each {word} of this shape has one alternative, so all of them have to hold."
+                offset = max(file.positions.triples[shape, predicate, head].object for head in heads)
+                yield file.at(offset, "SC-L35", message, hint=f"Write {word} ( ... ) once, with all of them in it.")
 
 
 def impossible_roles(file: LintedFile) -> Iterator[Diagnostic]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from rdflib import OWL, RDF, RDFS, SH, XSD, Literal, URIRef
@@ -28,6 +29,8 @@ EXAMPLES = {
     }.items()
 }
 """A literal of each datatype of short texts."""
+_DECIMAL_COMMA = re.compile(r"(?<!,)([+-]?[0-9]+),([0-9]+)(?![\w.,:])")
+"""Two whole numbers, where a number with a comma in it was meant; more of them are a list."""
 _NAMING_TERMS = frozenset(
     (RDFS.domain, RDFS.range, OWL.inverseOf, OWL.disjointWith, OWL.onProperty, OWL.onClass, OWL.imports)
 )
@@ -46,15 +49,26 @@ def literals_for_iris(file: LintedFile) -> Iterator[Diagnostic]:
             message = f"The value of {file.short(predicate)} is a thing with an IRI, not a literal."
             hint = f"Write an IRI, such as :{suggested_local_name(value) or 'kitchen'}."
             yield file.at(offset, "SC-L07", message, hint=hint)
-        elif value in file.source.parameters and (value, SH.datatype, None) in file.graph:
-            short = file.short(str(value))
-            message = f"The value of {file.short(predicate)} is a thing with an IRI, and {short} stands for a literal."
-            yield file.at(
-                offset,
-                "SC-L07",
-                message,
-                hint=f"Say sh:nodeKind sh:IRI of {short} in place of its sh:datatype.",
-            )
+        elif value in file.source.parameters:
+            short, typed = file.short(str(value)), (value, SH.datatype, None) in file.graph
+            listed = [one for head in file.graph.objects(value, SH["in"]) for one in file.items(head)]
+            if typed or any(isinstance(one, Literal) for one in listed):
+                message = (
+                    f"The value of {file.short(predicate)} is a thing with an IRI, and {short} stands for a literal."
+                )
+                instead = f"sh:nodeKind sh:IRI of {short} in place of its sh:datatype" if typed else "IRIs in its sh:in"
+                yield file.at(offset, "SC-L07", message, hint=f"{'Say' if typed else 'List'} {instead}.")
+    yield from _asked_for_literals(file)
+
+
+def _asked_for_literals(file: LintedFile) -> Iterator[Diagnostic]:
+    """Shapes that ask for a datatype where the property wants a thing."""
+    for shape, datatype in file.graph.subject_objects(SH.datatype):
+        for path in file.graph.objects(shape, SH.path):
+            if str(path) in file.index.object_properties and str(path) not in _SC:
+                message = f"The value of {file.short(str(path))} is a thing with an IRI, which has no datatype."
+                offset = file.positions.triples[shape, SH.datatype, datatype].object
+                yield file.at(offset, "SC-L07", message, hint="Write sh:nodeKind sh:IRI, or its class by sh:class.")
 
 
 def literals_for_terms(file: LintedFile) -> Iterator[Diagnostic]:
@@ -73,6 +87,12 @@ def unfit_literals(file: LintedFile) -> Iterator[Diagnostic]:
             kinds = " or ".join(map(file.short, wanted))
             message = f"The value of {file.short(predicate)} is of the datatype {kinds}, and this is none."
             hint = f"Write {_written(str(value), wanted[0], file)}."
+            yield file.at(offset, "SC-L26", message, hint=hint)
+    numbers = file.positions.triples.values() if _DECIMAL_COMMA.search(file.positions.text) else ()
+    for offset in sorted({one.object for one in numbers}):
+        if (comma := _DECIMAL_COMMA.match(file.positions.text, offset)) is not None:
+            message = f"{comma[0]} are two values, {comma[1]} and {comma[2]}."
+            hint = f"Write {comma[1]}.{comma[2]} for one, and {comma[1]} , {comma[2]} for two."
             yield file.at(offset, "SC-L26", message, hint=hint)
 
 
@@ -94,6 +114,7 @@ def _written(text: str, datatype: str, file: LintedFile) -> str:
     if datatype == str(XSD.boolean):
         return "true or false" if text not in TRUTH else "true" if TRUTH[text] else "false"
     if datatype in DATATYPES and (not known or number_of(text, datatype) is not None):
-        example = next(one for one in ("10", "-10") if of_range(one, datatype, datatype))
-        return text if known else f"a number, such as {example}"
+        example = next(one for one in ("1.5", "10", "-10") if of_range(one, datatype, datatype))
+        whole = "" if "." in example else "whole "
+        return text if known else f"a {whole}number, such as {example}"
     return f'"{text}"^^{file.short(datatype)}' if known else f"it as in {EXAMPLES[datatype]}"

@@ -55,6 +55,18 @@ def misnamed_units(file: LintedFile) -> Iterator[Diagnostic]:
             yield file.at(file.positions.triples[port, _UNIT, unit].object, "SC-L23", message)
 
 
+def units_by_other_words(file: LintedFile) -> Iterator[Diagnostic]:
+    """Units that a port without `sc:unit` states by the word of another vocabulary."""
+    ports = {port for link in (SC.hasInput, SC.hasOutput) for port in file.graph.objects(None, URIRef(link))}
+    for port in ports:
+        for predicate, unit in file.graph.predicate_objects(port):
+            if unit in UNIT and isinstance(unit, URIRef) and (port, _UNIT, None) not in file.graph:
+                word = file.short(str(predicate))
+                message = f"A port has its unit by sc:unit; what it says by {word} keeps no two ports apart."
+                offset = file.positions.triples[port, predicate, unit].predicate
+                yield file.at(offset, "SC-L23", message, hint=f"Write sc:unit {file.short(str(unit))}.")
+
+
 def paths_from_outputs(file: LintedFile) -> Iterator[Diagnostic]:
     """Paths of what inputs accept that begin with what components say, and outputs do not: they lead nowhere."""
     for shape in sorted(set(file.graph.objects(None, _ACCEPTS)), key=file.offset):

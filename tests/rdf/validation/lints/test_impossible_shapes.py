@@ -84,3 +84,26 @@ def test_what_no_value_can_meet_is_noticed_where_there_may_be_none(
 ) -> None:
     assert only(text.format(f"sh:property [ sh:path {wrong} sh:maxInclusive 9 ]")).code == code
     assert not lints(text.format(f"sh:property [ sh:path {right} sh:maxInclusive 9 ]"))
+
+
+@pytest.mark.parametrize(
+    ("pattern", "hint"),
+    [
+        ("?lamp rob:place $This", "Write $this in place of $This."),
+        ("?lamp rob:place $self", "In it $this is the component."),
+        ("?lamp rob:place '$this' # $this", "In it $this is the component."),
+    ],
+)
+def test_a_query_that_does_not_ask_about_its_component_is_noticed(pattern: str, hint: str) -> None:
+    head = f'{TEMPLATE}:r sh:sparql [ sh:select """PREFIX rob: <https://w3id.org/selfconf/robotics#> SELECT $this {{'
+    found = only(f'{head} {pattern}\n}}""" ] .')
+    assert (found.code, found.hint) == ("SC-L34", hint)
+    assert lints(f'{head} ?lamp rob:place ?this }}""" ] .') == []
+
+
+@pytest.mark.parametrize("word", ["or", "xone"])
+def test_alternatives_that_stand_alone_are_noticed_unless_there_is_one(word: str) -> None:
+    one, other = "[ sh:class rob:Lamp ]", "[ sh:property [ sh:path rob:place ; sh:minCount 1 ] ]"
+    assert only(f"{TEMPLATE}:r sh:{word} ( {one} ) , ( {other} ) .").code == "SC-L35"
+    for said in (f"( {one} )", f"( {one} {other} )", f"( {one} {other} ) , ( {other} )"):
+        assert lints(f"{TEMPLATE}:r sh:{word} {said} .") == []

@@ -38,11 +38,11 @@ def test_a_label_is_a_literal_and_stays_one() -> None:
     ("datatype", "value", "hint"),
     [
         ("integer", '"2"', "2"),
-        ("integer", '"two"', "a number, such as 10"),
+        ("integer", '"two"', "a whole number, such as 10"),
         ("boolean", '"true"', "true"),
         ("boolean", "1", "true"),
         ("boolean", '"0"', "false"),
-        ("negativeInteger", "5", "a number, such as -10"),
+        ("negativeInteger", "5", "a whole number, such as -10"),
         ("double", '"INF"', '"INF"^^xsd:double'),
         ("duration", '"P1D"', '"P1D"^^xsd:duration'),
         ("boolean", '"yes"', "true or false"),
@@ -93,3 +93,28 @@ def test_what_a_shape_asks_of_a_longer_path_is_left_alone() -> None:
 def test_a_list_of_thousands_may_be_asked_for() -> None:
     many = " ".join(f":p{number}" for number in range(3000))
     assert only(f"{TEMPLATE}:r sh:property [ sh:path rob:place ; sh:in ( {many} 'kitchen' ) ] .").code == "SC-L07"
+
+
+@pytest.mark.parametrize(
+    ("said", "pair"), [(":p 1,5", "1,5 are two values, 1 and 5."), (":p 7 , -12,0", "-12,0 are two values, -12 and 0.")]
+)
+def test_a_number_with_a_comma_is_two_values(said: str, pair: str) -> None:
+    found = only(f":a a sc:Component, rob:Tuner ; {said} .")
+    assert (found.code, found.message) == ("SC-L26", pair)
+
+
+@pytest.mark.parametrize("said", [":p 1 , 5", ":p 1,5,7", ":p '1,5'", ":p 1.5,2.5", ":p 1 ; rdfs:comment '''\n1,5'''"])
+def test_values_with_commas_between_are_left_alone(said: str) -> None:
+    assert lints(f":a a sc:Component, rob:Tuner ; {said} .") == []
+
+
+@pytest.mark.parametrize(
+    ("asked", "more"),
+    [
+        ("sh:datatype xsd:string", ""),
+        ("sh:in ( :place )", ":t sc:parameter :place . :place a sc:Parameter ; sc:name 'place' ; sh:in ( 'hall' ) ."),
+    ],
+)
+def test_a_shape_that_asks_a_property_of_things_for_literals_is_noticed(asked: str, more: str) -> None:
+    found = only(f"{TEMPLATE}:r sh:property [ sh:path rob:place ; {asked} ] .\n{more}")
+    assert (found.code, found.line) == ("SC-L07", HEAD + 2)

@@ -64,3 +64,11 @@ def test_what_a_component_issues_itself_is_no_source_of_its_inputs(tmp_path: Pat
     itself = component("filter", "hasInput", wanted) + component("filter", "hasOutput", " ; sc:unit unit:KiloGM")
     assert found(tmp_path, itself) == []
     assert len(found(tmp_path, itself + component("other", "hasOutput", " ; sc:unit unit:KiloGM"))) == 1
+
+
+@pytest.mark.parametrize(
+    ("said", "codes"),
+    [("<http://qudt.org/schema/qudt/hasUnit> unit:CentiM", ["SC-L23"]), (":of unit:M ; sc:unit unit:M", []), ("", [])],
+)
+def test_a_unit_by_the_word_of_another_vocabulary_is_told(tmp_path: Path, said: str, codes: list[str]) -> None:
+    assert found(tmp_path, component("out", "hasOutput", f" ; {said}")) == codes
