@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import atexit
 import os
+import queue
 import weakref
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -116,8 +117,29 @@ class ZenohBus(Loop):
         """How often this bus has gained or lost a hub: one that comes back has the same name as before."""
         self._link_watchers: list[Callable[[], None]] = []
         self._unread_links = UnreadLinks(self, session.info.links)
-        self._declared.add(session.info.declare_transport_events_listener(callback(self._turned), history=True))
+        self._listen_to_links()
         _OPEN.add(self)
+
+    def _listen_to_links(self) -> None:
+        """Hear of the hub that there is, and of each that comes or goes.
+
+        Of the first, Zenoh tells on the thread that asks for it. If that is the main thread, a Ctrl-C at this moment is
+        raised in the callback: Zenoh prints it and goes on, and the hub is not known. So another thread asks.
+        """
+        declared: queue.SimpleQueue[Any] = queue.SimpleQueue()
+
+        def listen() -> None:
+            try:
+                heard = callback(self._turned)
+                declared.put(self._session.info.declare_transport_events_listener(heard, history=True))
+            except zenoh.ZError as error:  # it is raised again, in the thread that waits
+                declared.put(error)
+
+        self._readers.begin(listen)
+        listener = declared.get()
+        if isinstance(listener, zenoh.ZError):
+            raise listener
+        self._declared.add(listener)
 
     def relay(self, hub: Hub, connect: Sequence[str]) -> None:
         """Keep a hub, connected to others, until this bus is closed or relays no more."""

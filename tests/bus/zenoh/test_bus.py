@@ -11,7 +11,7 @@ from collections.abc import Callable
 from types import SimpleNamespace
 
 import pytest
-from zenoh import SampleKind, WhatAmI
+from zenoh import SampleKind, TransportEvent, WhatAmI
 
 from selfconf.bus.port import Replies, Request, Sample, Urgency
 from selfconf.bus.zenoh import ZenohBus, client, router, unread_links
@@ -64,6 +64,24 @@ def test_lives_end_for_a_bus_whose_session_other_code_has_closed(zenoh_router: Z
     assert len(undone) == 1
     here.close()
     there.close()
+
+
+def test_no_callback_of_zenoh_runs_on_the_thread_that_opens_a_bus(
+    zenoh_router: ZenohBus, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    threads: list[int] = []
+    turned = ZenohBus._turned
+
+    def noted(bus: ZenohBus, event: TransportEvent) -> None:
+        threads.append(threading.get_ident())
+        turned(bus, event)
+
+    monkeypatch.setattr(ZenohBus, "_turned", noted)
+    bus = client([zenoh_router.endpoint])
+    assert bus.link
+    assert threads
+    assert threading.get_ident() not in threads, "a Ctrl-C would be raised in the callback, and get lost"
+    bus.close()
 
 
 def test_a_client_whose_router_is_gone_is_not_linked_and_is_again_when_it_is_back(top: str) -> None:
