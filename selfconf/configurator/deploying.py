@@ -222,9 +222,10 @@ def confirmed(state: State, answer: Answered) -> Reaction:
         return take_offered(state, answer.component) if state.pending else proceed(state)
     if answer.call is Call.RESERVE:
         known = replace(held, life=answer.life, asked=False, reserved=True)
-        if answer.acts and not held.active:  # it was given up, and has not heard of that: it follows some of this
-            plan, mine = state.plan, answer.component
-            assert plan is not None
+        plan, mine = state.plan, answer.component
+        assert plan is not None
+        # It was given up, and has not heard of that: it follows some of this. One that is not wanted is to be released.
+        if answer.acts and not held.active and mine in plan.inputs:
             inputs, calling = plan.inputs[mine], plan.callers[mine]
             known = replace(known, applied=Applied.SENT, inputs=inputs, values=plan.values[mine], callers=calling)
         return proceed(replace(state, held={**state.held, answer.component: known}))

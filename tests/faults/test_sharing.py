@@ -40,3 +40,9 @@ def test_no_history_of_tasks_that_share_breaks_an_invariant(batch: int, folder: 
 )
 def test_a_history_of_tasks_that_share_that_was_broken_once_is_not_any_more(seed: int, folder: Path) -> None:
     play_well(recipe(seed), folder)
+
+
+@pytest.mark.slow
+def test_what_was_adopted_and_is_not_wanted_any_more_may_act_again_before_it_is_let_go(folder: Path) -> None:
+    """It has obeyed an apply that was overtaken by a reserve of the next epoch, and says that it acts."""
+    play_well(Recipe(3100000079, SHARED, kept=True), folder)
