@@ -369,7 +369,7 @@ class TaskRunner:
     def _wants(self, component: IRI) -> Wants:
         """What is wanted of a component that this task holds, for those that would share it."""
         target, held = self.state.target, self.state.held[component]
-        if not self.ecology.is_shareable(component):
+        if not self.ecology.may_be_shared(component):
             return Wants()
         if target is not None and component in target.components:
             return target.wants(component)

@@ -87,7 +87,7 @@ class TaskDiscovery:
         self._liveness.discovered(discovery)
         self._tell(discovery)
         number = self._asked
-        shared = {component: holder for component, holder in holders.items() if self._ecology.is_shareable(component)}
+        shared = {component: holder for component, holder in holders.items() if self._ecology.may_be_shared(component)}
         unseen = any(component not in discovery.found for component in self._state().held)
         held = Discovered({c: holder for c, holder in holders.items() if c not in shared}, shared, unseen)
 

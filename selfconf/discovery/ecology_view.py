@@ -74,10 +74,10 @@ class EcologyView:
         """Whether a component lives a certain life."""
         return life in self.lives.get(component_chunk(component), ())
 
-    def is_shareable(self, component: IRI) -> bool:
-        """Whether several tasks may hold a component at once, by its advertisement."""
+    def may_be_shared(self, component: IRI) -> bool:
+        """Whether several tasks may hold a component at once, unless its advertisement is known and says otherwise."""
         found = self.discovery.found.get(component)
-        return found is not None and found.advertisement.profile.is_shareable
+        return found is None or found.advertisement.profile.is_shareable
 
     def began(self, chunk: str, life: str) -> None:
         """Note that a life has begun; of very many of one component the least, which stay, are noted."""

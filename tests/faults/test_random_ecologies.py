@@ -94,6 +94,10 @@ def test_sites_that_keep_tasks_run_them_and_go_on_with_them(folder: Path) -> Non
             Recipe(2500000035, random_ecology(833333345), harsh=True),
             id="of two components that others hold one can be shared if it follows something else",
         ),
+        pytest.param(
+            Recipe(2700200291, random_ecology(900066763), harsh=True, kept=True),
+            id="a configurator does not know by an advertisement that what it has adopted can be shared",
+        ),
     ],
 )
 def test_a_history_in_an_ecology_of_random_shape_that_was_broken_once_is_not_any_more(

@@ -86,7 +86,7 @@ class Calls:
         another task stand outputs inside, of which this task has not heard.
         """
         held = self._state().held
-        shareable = self.ecology.is_shareable(effect.component)
+        shareable = self.ecology.may_be_shared(effect.component)
         feeding = self._ends.feeding(effect.inputs) if shareable else set()
         unheard = {one for one in feeding if not (one in held and held[one].acts)}
         if not unheard:
