@@ -20,7 +20,7 @@ import pytest
 from selfconf.access import Authority, CertificateWatch, KeysFolder, Principal, PrincipalKind, is_in_time
 from selfconf.access.certificates import Certificate
 from selfconf.access.expiry import CERTIFICATE_CHECK
-from selfconf.api.sites.joining import REACHED
+from selfconf.api.sites.hub_wait import REACHED
 from selfconf.bus.memory import Network
 from selfconf.bus.port import Request
 from selfconf.bus.presented_certificate import presented
