@@ -10,7 +10,7 @@ from selfconf.bus.zenoh import ZenohBus
 from selfconf.discovery import Beliefs
 from selfconf.errors import NetworkError
 from selfconf.model.immutable import immutable
-from selfconf.rendezvous import member_bus
+from selfconf.rendezvous import credentials, member_bus
 
 MEMBERS = ("conf", "read", "site")
 """The kinds of certificates that a program of a person may show: what it does is more or less, and the sites judge."""
@@ -31,6 +31,11 @@ class Membership:
         `distrusted` is called on its thread, each second, once the certificate of this program was revoked.
         """
         return member_bus(self.ecology, self.endpoints, self.credentials, distrusted=distrusted)
+
+    def check_certificate(self) -> None:
+        """Raise AuthorError where no hub lets this program in any more: its certificate has expired, or was revoked."""
+        if self.credentials is not None:
+            credentials(self.credentials.folder, *MEMBERS)
 
     def beliefs(self) -> Beliefs | None:
         """What says whose a disputed component is, by the folder of keys of this program; None without keys."""

@@ -26,6 +26,8 @@ LOSS_TOLD = 0.5
 """Seconds after the end of a question by which the loss of the link is known that has ended it."""
 ASKED = 3
 """How often something is asked at most, where the link is lost each time."""
+ATTENDED = 1.0
+"""How often, in seconds, a bus is attended to while nothing is asked."""
 CUT_OFF_MEANWHILE = "cut off from the ecology while it was asked; try again"
 _Result = TypeVar("_Result")
 
@@ -36,17 +38,23 @@ class SynchronousBus:
     What has come for any of them is done by the one whose turn it is, so none waits for the answers of others.
     """
 
-    def __init__(self, bus: Bus, seconds: float = ROLL_CALL, lives: str = "") -> None:
+    def __init__(
+        self, bus: Bus, seconds: float = ROLL_CALL, lives: str = "", check_own: Callable[[], None] = lambda: None
+    ) -> None:
         """`seconds` is how long a roll-call or a question may take, unless it says otherwise.
 
         `lives` is a key of lives of which some are seen unless this program is cut off, such as those of sites.
+        `check_own` is called where this program is cut off, and raises if that is for a reason of its own.
         """
-        self._bus, self._seconds, self._lives = bus, seconds, lives
+        self._bus, self._seconds, self._lives, self._check_own = bus, seconds, lives, check_own
         self._link = bus.link
         """The link over which others were last known to be connected too."""
         self._cut_off = False
         """Whether the last question waited for a link in vain; the next one does not."""
         self._left = False
+        self._over = threading.Event()
+        """Set once it was left, for the thread that attends to the bus."""
+        self._attending: threading.Thread | None = None
         self._process = os.getpid()
         self._turn, self._next_turn = threading.Lock(), threading.Lock()
         self._running: int | None = None
@@ -55,6 +63,26 @@ class SynchronousBus:
     def leave(self) -> None:
         """From now on nothing can be asked: the bus is closed by its owner."""
         self._left = True
+        self._over.set()
+        attending = self._attending
+        if attending is not None and attending is not threading.current_thread() and self._process == os.getpid():
+            attending.join()
+
+    def attend(self) -> None:
+        """Have the bus do what is due also while nothing is asked, on a thread of its own, until it is left."""
+        self._attending = threading.Thread(target=self._attend, daemon=True, name="attending")
+        self._attending.start()
+
+    def _attend(self) -> None:
+        while not self._over.wait(ATTENDED):
+            # Not waited for: a thread whose turn it is lets the bus run itself, and may be the one that is leaving.
+            if self._turn.acquire(blocking=False):
+                self._running = threading.get_ident()
+                try:
+                    self._bus.poll(0.0)
+                finally:
+                    self._running = None
+                    self._turn.release()
 
     def check(self) -> None:
         """Raises ProgrammerError where the ecology was left, and in a process that was forked since it was joined."""
@@ -117,6 +145,7 @@ class SynchronousBus:
             answer = ask()
             if self._bus.link == self._link and (heard(answer) or not self._has_lost_link()):
                 return answer
+        self._check_own()
         raise NetworkError(CUT_OFF_MEANWHILE)
 
     def _has_lost_link(self) -> bool:
@@ -139,6 +168,7 @@ class SynchronousBus:
         self._link = self._bus.link
         self._cut_off = not self._link
         if self._cut_off:
+            self._check_own()
             raise NetworkError(CUT_OFF_MEANWHILE)
         self.pause(OTHERS_BACK)
 

@@ -17,6 +17,7 @@ from pathlib import Path
 
 import pytest
 
+import selfconf as sc
 from selfconf.access import Authority, CertificateWatch, KeysFolder, Principal, PrincipalKind, is_in_time
 from selfconf.access.certificates import Certificate
 from selfconf.access.expiry import CERTIFICATE_CHECK
@@ -26,6 +27,7 @@ from selfconf.bus.port import Request
 from selfconf.bus.presented_certificate import presented
 from selfconf.bus.zenoh import GREETING, client, with_port
 from selfconf.bus.zenoh.session import Security, open_session
+from selfconf.errors import AuthorError, NetworkError
 from selfconf.protocol.codec import decode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Introduction
@@ -308,6 +310,34 @@ def test_a_program_whose_certificate_has_expired_tries_no_link_until_it_is_renew
         finally:
             bus.close()
             hub.close()
+
+
+@of_keys
+@pytest.mark.process
+def test_a_program_that_has_joined_and_asks_nothing_tries_no_link_by_a_certificate_that_has_expired(home: Home) -> None:
+    assert home.authority is not None
+    alice, pause = home.folder / "alice", threading.Event()
+    home.authority.issue(ALICE, alice, days=8 * SECOND)
+    home.site("kitchen", "ads")
+
+    def found() -> bool:
+        with suppress(NetworkError):
+            return bool(living.components)
+        return False
+
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        other.setblocking(False)
+        second = f"tls/127.0.0.1:{other.getsockname()[1]}"
+        with sc.join(home.ecology, connect=(home.endpoint(), second), keys=alice) as living:
+            assert living.components
+            pause.wait(8.0 + 3 * CERTIFICATE_CHECK)  # nothing is asked until it has expired, and that was seen
+            attempts_at(other)
+            pause.wait(2.0)  # in which it would try some ten times
+            assert attempts_at(other) == 0
+            with pytest.raises(AuthorError, match=r"the certificate of conf.alice has expired at .*; renew it with"):
+                _ = living.components
+            home.authority.renew(alice)
+            assert home.until(found)
 
 
 @of_keys

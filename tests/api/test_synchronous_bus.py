@@ -10,11 +10,12 @@ from functools import partial
 
 import pytest
 
+from selfconf.api import synchronous_bus
 from selfconf.api.synchronous_bus import ANSWER_PATIENCE, LOSS_TOLD, SynchronousBus
 from selfconf.bus.loop import Loop
 from selfconf.bus.memory import MemoryBus, Network
 from selfconf.bus.port import Replies, Request
-from selfconf.errors import NetworkError, ProgrammerError
+from selfconf.errors import AuthorError, NetworkError, ProgrammerError
 
 
 @pytest.fixture
@@ -141,6 +142,50 @@ def test_nothing_is_asked_once_the_ecology_was_left(network: Network) -> None:
     for ask in (bus.check, lambda: bus.ask("k/answers"), lambda: bus.living("k/life/*")):
         with pytest.raises(ProgrammerError, match="the ecology was left"):
             ask()
+
+
+@pytest.mark.parametrize("then", [[""], ["hub 1", ""]])
+def test_what_is_cut_off_for_a_reason_of_its_own_says_that(links: list[str], then: list[str], network: Network) -> None:
+    def check_own() -> None:
+        raise AuthorError("the certificate has expired")
+
+    bus = SynchronousBus(network.node(), check_own=check_own)
+    links[:] = then
+    with pytest.raises(AuthorError, match="has expired"):
+        bus.ask("k/answers")
+
+
+def test_a_bus_that_is_attended_to_does_what_is_due_also_while_nothing_is_asked(
+    network: Network, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(synchronous_bus, "ATTENDED", 0.01)
+    shared, done = SharedBus(network), threading.Event()
+    bus, others = SynchronousBus(shared), threading.active_count()
+    shared.later(0.02, done.set)
+    bus.attend()
+    assert done.wait(ANSWER_PATIENCE)
+    assert [bus.ask(str(number)).errors for number in range(50)] == [(str(number),) for number in range(50)]
+    bus.leave()
+    assert threading.active_count() == others, "the thread has ended, so that the bus can be closed"
+
+
+def test_what_interrupts_a_thread_in_its_turn_may_leave_an_ecology_that_is_attended_to(
+    network: Network, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(synchronous_bus, "ATTENDED", 0.01)
+    shared = SharedBus(network)
+    bus, left = SynchronousBus(shared), threading.Event()
+
+    def leave() -> None:
+        left.wait(0.1)  # in which the other thread looks for its turn several times
+        bus.leave()
+        left.set()
+
+    bus.attend()
+    shared.later(0.05, leave)
+    with pytest.raises(ProgrammerError, match="the ecology was left"):
+        bus.run(lambda: False)
+    assert left.is_set()
 
 
 def test_what_never_ends_is_given_up(network: Network) -> None:

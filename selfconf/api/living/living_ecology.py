@@ -78,7 +78,9 @@ class LivingEcology(Ecology):
         self._view = EcologyView(self._bus, name, self._membership.beliefs(), selects=True, suspended_sites=suspended)
         self.discovery = Discovery()
         """What the last look at the ecology has found: advertisements with site and source, sites, who is missing."""
-        self._synchronous = SynchronousBus(self._bus, lives=self._view.keys.any_site_life())
+        self._synchronous = SynchronousBus(
+            self._bus, lives=self._view.keys.any_site_life(), check_own=self._membership.check_certificate
+        )
         self._tasks = LivingTasks(self._synchronous, self._view.keys, self.endpoints)
         self._running = RunningTasks()
         """What was found when the configurators were last asked for their tasks."""
@@ -88,6 +90,8 @@ class LivingEcology(Ecology):
             with rendezvous.suspended_sites_named(self.endpoints):
                 if not any(self._sites_answer(pause) for pause in PAUSES):
                     raise NetworkError(f"no site of the ecology {name!r} answers; is it the right name?")
+            if credentials is not None:
+                self._synchronous.attend()  # its certificate is looked at, also where nothing is asked for long
         except BaseException:
             self.close()
             raise
