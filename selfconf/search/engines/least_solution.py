@@ -202,7 +202,7 @@ class _Descent:
         self.advance(first, ALONE_OF_TWO if crowded else ALONE)
         if self.finished:
             return
-        rival = _joined(lambda: Rival(encoding, self.slots, self.least), stack)
+        rival = _joined(lambda: Rival(encoding, self.slots, self.least, first.clauses.interrupt), stack)
         if rival is not None:
             self.beside.append(rival)
             if in_order is not None and crowded:

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import os
+import threading
 import time
 from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import pytest
 
+from benchmarks.search.families.scaling import distinct
 from selfconf.search.engines import rival
 from selfconf.search.engines.encoding import Encoding
 from selfconf.search.engines.rival import Rival
@@ -70,8 +74,53 @@ def test_the_process_has_ended_when_the_block_has() -> None:
     assert other._process.poll() is not None
 
 
+@pytest.mark.process
+def test_there_is_none_without_a_thread_and_no_process_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    begun, start = [], rival.subprocess.Popen
+
+    def no_thread(_: threading.Thread) -> None:
+        raise RuntimeError("can't start new thread")
+
+    def noted(*arguments: Any, **options: Any) -> Any:
+        begun.append(start(*arguments, **options))
+        return begun[0]
+
+    monkeypatch.setattr(rival.threading.Thread, "start", no_thread)
+    monkeypatch.setattr(rival.subprocess, "Popen", noted)
+    with pytest.raises(OSError, match="can't start new thread"):
+        asked(SEEING)
+    assert begun[0].poll() is not None
+
+
 def test_there_is_none_without_an_interpreter_to_start(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rival.os, "sched_getaffinity", lambda _: {0, 1})
     assert Rival.available()
     monkeypatch.setattr(rival.sys, "executable", "")
     assert not Rival.available()
+
+
+@pytest.mark.process
+def test_a_question_of_any_size_is_sent_and_its_answer_is_told_while_nobody_asks() -> None:
+    """A socket takes some hundred kilobytes at once; the question goes on while the search is in a call."""
+    ends = threading.Event()
+    given = reduced(distinct(60, 59))
+    encoding = Encoding(given)
+    encoding.statements += [[1, 2, 3 + k % 50] for k in range(200_000)]
+    with Rival(encoding, given.slots, True, ends.set) as other:
+        assert ends.wait(60)
+        assert list(other.settled()) == []
+        assert other.possible is False
+
+
+@pytest.mark.process
+def test_a_process_is_ended_that_has_not_read_its_question(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    idle = tmp_path / "idle.py"
+    idle.write_text("import signal\nsignal.pause()\n")
+    monkeypatch.setattr(rival, "PROGRAM", idle)
+    given = reduced(SEEING)
+    encoding = Encoding(given)
+    encoding.statements += [[1, 2, 3] for _ in range(200_000)]
+    with Rival(encoding, given.slots, True) as other:
+        assert other.possible is None
+    assert other._process.poll() is not None
+    assert not other._thread.is_alive()
