@@ -26,7 +26,7 @@ from selfconf.api.tasks.run_outcomes import AnsweredEvent as AnyRunEvent
 from selfconf.api.tasks.run_outcomes import AnsweredRunning as TaskRunning
 from selfconf.api.tasks.run_outcomes import AnsweredSearch as SearchEnded
 from selfconf.api.validation import ValidationReport
-from selfconf.configurator import Loss
+from selfconf.configurator import Loss, Revival
 from selfconf.discovery import Discovery, FoundAdvertisement
 from selfconf.model.configuration import Assignment, Connection, ParameterSetting, Wants
 from selfconf.model.consequence import Consequence
@@ -204,6 +204,7 @@ __all__ = [
     "RefusedAttempt",
     "Relaxation",
     "Requirement",
+    "Revival",
     "Role",
     "RolePartition",
     "RolePlayed",

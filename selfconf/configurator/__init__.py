@@ -15,9 +15,9 @@ let go of it (`ReleaseFrom`), follow its life or not (`Watch`, `Unwatch`); tell 
 (`Finish`).
 
 Of a state: its `Phase` (`DEPLOYING` are those of a deployment), its `Policy` after a failure, and why a component is
-lost (`Loss`). Of a configuration: its `Plan` (`plan_of`), which says of each component which outputs its inputs
-follow, which values it has, who may call it (a `Caller` by component, operation by operation in `Callers`), and when it
-starts.
+lost (`Loss`), and whether its site can start it again (`Revival`). Of a configuration: its `Plan` (`plan_of`), which
+says of each component which outputs its inputs follow, which values it has, who may call it (a `Caller` by component,
+operation by operation in `Callers`), and when it starts.
 """
 
 from selfconf.configurator.deploying import DEPLOYING
@@ -62,7 +62,7 @@ from selfconf.configurator.events import (
 )
 from selfconf.configurator.machine import step
 from selfconf.configurator.starting_order import Caller, Callers, Plan, plan_of
-from selfconf.configurator.state import Loss, Phase, Policy, State
+from selfconf.configurator.state import Loss, Phase, Policy, Revival, State
 
 __all__ = [
     "DEPLOYING",
@@ -98,6 +98,7 @@ __all__ = [
     "Reconnected",
     "ReleaseFrom",
     "ReserveOf",
+    "Revival",
     "Rewired",
     "Running",
     "State",

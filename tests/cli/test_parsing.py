@@ -87,8 +87,8 @@ def test_a_word_too_many_is_refused_where_a_command_takes_no_more(
     assert run(capsys, *arguments).is_one_sentence(words)
 
 
-@pytest.mark.parametrize("command", ["discover", "status", "tasks", "top", "why x", "log", "access", "stop"])
-def test_what_is_said_of_a_living_ecology_is_text_or_json(command: str) -> None:
+@pytest.mark.parametrize("command", ["status", "tasks", "why x", "log", "access", "stop", "discover", "top"])
+def test_what_is_said_of_a_living_ecology_is_for_people_or_json(command: str) -> None:
     words = command.split()
-    assert parser(words[:1]).parse_args(words).format == "text"
+    assert parser(words[:1]).parse_args(words).format == ("table" if command in ("discover", "top") else "text")
     assert parser(words[:1]).parse_args([*words, "--format", "json"]).format == "json"

@@ -161,7 +161,8 @@ def test_the_files_for_prometheus_are_yaml_and_name_each_other() -> None:
 
 
 def test_every_command_of_the_page_is_one_that_there_is() -> None:
-    said = re.findall(r"`selfconf ([a-z][^`]*)`", PAGE)
+    today = PAGE.replace("--at 14:02", "--at 00:00")  # which has come, whenever this is run
+    said = re.findall(r"`selfconf ([a-z][^`]*)`", today)
     assert len(said) > 20
     for words in said:
         assert parser().parse_args(shlex.split(words if " " in words else NEEDS.get(words, words))).run
