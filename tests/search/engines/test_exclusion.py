@@ -175,7 +175,7 @@ def test_components_of_roles_that_feed_each_other_are_part_of_the_graph(monkeypa
 
 
 @pytest.mark.parametrize("halls", range(2, 6))
-def test_contested_components_are_shared_out_as_the_oracle_does(halls: int) -> None:
+def test_contested_components_are_shared_out_as_depth_first_search_does(halls: int) -> None:
     pytest.importorskip("pysat")
     for carts in range(halls, halls + 4):
         problem = contested(halls, max(carts, 3))
