@@ -6,7 +6,7 @@ import struct
 import subprocess
 import threading
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -146,7 +146,11 @@ class BridgedDomain:
 
     def advertised(self) -> str:
         """All that is advertised."""
-        return "\n".join(path.read_text() for path in sorted(self.folder.glob("*.ttl")))
+        texts = []
+        for path in sorted(self.folder.glob("*.ttl")):
+            with suppress(FileNotFoundError):  # the bridge has taken it away meanwhile
+                texts.append(path.read_text())
+        return "\n".join(texts)
 
     def close(self) -> None:
         """Have every node leave."""
