@@ -64,10 +64,11 @@ def _ended_since(state: State, event: Failed) -> State:
 def _passes_over(held: Held, event: Failed) -> bool:
     """Whether it is another life than the one that is held which has failed, or one silent that may not have begun.
 
+    A process that has ended without a life is another one as well: it may have found that the component lives already.
     Or it is another task that is asked to let go of it, perhaps for this one, which has neither reserved it nor applied
     to it: an apply that has not been answered yet may be its reservation.
     """
-    another = bool(event.life and held.life and event.life != held.life)
+    another = held.life not in ("", event.life) and (event.life != "" or event.cause in PROCESS_ENDS)
     others = event.cause in GOES_ON and not (held.reserved or held.active)
     return another or others or (event.cause is Cause.SILENCE and not held.confirmed)
 

@@ -149,10 +149,17 @@ def test_the_failure_of_an_earlier_life_is_passed_over() -> None:
     assert history.state.phase is Phase.RUNNING
 
 
-@pytest.mark.parametrize("life", ["", "1"])
-def test_the_end_of_a_life_that_is_told_by_its_site_and_by_its_token_is_one_loss(life: str) -> None:
+@pytest.mark.parametrize("cause", [Cause.CRASH, Cause.HUNG])
+def test_a_process_that_has_ended_without_a_life_is_none_of_a_component_that_lives(cause: Cause) -> None:
+    """Its site has started a second one, which leaves as the component lives already, and at last is given up."""
+    history = History().running()
+    assert history.hear(Failed(TRACKER, "", cause, startable=True)) == []
+    assert history.state.phase is Phase.RUNNING
+
+
+def test_the_end_of_a_life_that_is_told_by_its_site_and_by_its_token_is_one_loss() -> None:
     history = History(TASK).running()
-    history.hear(Failed(TRACKER, life, Cause.CRASH, startable=True))
+    history.hear(Failed(TRACKER, "1", Cause.CRASH, startable=True))
     history.composed(REFUSAL)
     history.composed(navigation())
     assert (TRACKER, Call.WAKE) in history.state.pending
