@@ -1,6 +1,6 @@
 """Real faults, by seed, and a table of promises, trials and violations.
 
-    python -m benchmarks.faults [--trials 60] [--seed 1] [--minutes 10] [--workers 4] [--router] [--smoke]
+    python -m benchmarks.faults [--trials 60] [--seed 1] [--minutes 10] [--workers 4] [--router] [--rival] [--smoke]
     python -m benchmarks.faults --only 1/17         one trial again
     python -m benchmarks.faults --keep FOLDER       what happened in each trial that broke a promise, as FOLDER/1-17.txt
 
@@ -10,6 +10,9 @@ stopped for half a second, two or ten; one in four has a second fault. Sites com
 
 With `--router` each site is as on a host of its own, linked to nobody but a router that all go through; in two of seven
 trials it is that which is killed, ended or stopped.
+
+With `--rival` another run begins shortly before the fault, whose task goes before: it shares the sonar, takes the
+drive, and has a composite for the control. It has faults as well, and is ended before the task has to run again.
 """
 
 from __future__ import annotations
@@ -43,6 +46,7 @@ class Series:
 
     def __init__(self, plans: Sequence[Plan], minutes: float, routed: bool, keep: Path | None = None) -> None:
         self._plans, self._number, self._routed = iter(plans), len(plans), routed
+        self._rival = any(planned.lead is not None for planned in plans)
         self._deadline, self._keep = time.monotonic() + 60 * minutes, keep
         self._turn = threading.Condition()
         self._at_work = 0
@@ -72,7 +76,7 @@ class Series:
             self._at_work += 1
         try:
             while (planned := self._next()) is not None:
-                ecology = ecology or Ecology(folder, self._routed, self._halt)
+                ecology = ecology or Ecology(folder, self._routed, self._halt, self._rival)
                 last = Trial(ecology, planned).carry_out()
                 self._note(last)
                 if last.broken:
@@ -151,6 +155,7 @@ def main() -> int:
     parser.add_argument("--only", metavar="SEED/NUMBER", help="one trial")
     parser.add_argument("--keep", metavar="FOLDER", type=Path, help="write what happened where a promise was broken")
     parser.add_argument("--router", action="store_true", help="have all go through one router, and hit that as well")
+    parser.add_argument("--rival", action="store_true", help="have a task of higher priority come and go")
     parser.add_argument("--smoke", action="store_true", help="two short trials at once, to see that it works")
     given = parser.parse_args()
     seed, numbers, longest, workers = given.seed, list(range(given.trials)), 10.0, given.workers
@@ -160,7 +165,7 @@ def main() -> int:
         seed, number = map(int, given.only.split("/"))
         numbers = [number]
     victims = ROUTED_VICTIMS if given.router else VICTIMS
-    plans = [plan(seed, number, longest, victims) for number in numbers]
+    plans = [plan(seed, number, longest, victims, given.rival) for number in numbers]
     series = Series(plans, given.minutes, given.router, given.keep)
     series.play(min(workers, len(numbers)))
     print(report(series.outcomes))

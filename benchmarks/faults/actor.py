@@ -26,7 +26,11 @@ OUTPUTS = {
     "control": "set.velocity",
     "drive": "",
 }
-"""The actors, each with its output."""
+"""The actors of the task, each with its output."""
+RIVAL_OUTPUTS = {"veer": "set.velocity"}
+"""The actors that only the rival of the task needs, inside its composite, each with its output."""
+VEERING = 1.0
+"""The angular velocity by which what the rival issues is told from what the task issues, in rad/s."""
 SIGNALS: dict[str, dict[str, object]] = {
     "ranges": {"angles": [0.0], "ranges": [1.0], "max_range": 5.0},
     "odometry": {"x": 1.0, "y": 2.0, "theta": 0.5, "linear": 0.1, "angular": 0.0},
@@ -58,10 +62,12 @@ class Actor(Component):
         """Act once."""
         self.witness.note(self.name, "acts")
         if self.output:
-            self.emit(self.output, SIGNALS[self.output])
+            self.emit(self.output, SIGNALS[self.output] | ({"angular": VEERING} if self.name in RIVAL_OUTPUTS else {}))
 
     def received(self, port: str, signal: Signal) -> None:
-        """Pass over what is heard."""
+        """Say whose velocity it is; pass over all else that is heard."""
+        if port == "velocity":
+            self.witness.note(self.name, "heeds the rival" if signal["angular"] else "heeds the task")
 
 
 class Witness:
@@ -81,7 +87,8 @@ class Witness:
 def actor(name: str, witness: Witness) -> type[Actor]:
     """The class of one of the advertisements."""
     (advertisement,) = ADVERTISEMENTS.glob(f"*/{name}.ttl")
-    members = {"advertisement": str(advertisement), "output": OUTPUTS[name], "name": name, "witness": witness}
+    output = (OUTPUTS | RIVAL_OUTPUTS)[name]
+    members = {"advertisement": str(advertisement), "output": output, "name": name, "witness": witness}
     return type("Actor", (Actor,), members)
 
 

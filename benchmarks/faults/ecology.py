@@ -24,7 +24,11 @@ from selfconf.bus.zenoh import with_port
 
 ROOT = Path(__file__).resolve().parents[2]
 TASK = Path(__file__).parent / "task.ttl"
+RIVAL = Path(__file__).parent / "rival.ttl"
+"""A task that goes before: it shares the sonar, takes the drive, and has a composite for the control."""
 SITES = ("robot", "room")
+RIVALS_SITE = "room"
+"""The site that also advertises what only the rival needs."""
 HUB = "hub"
 """A site that advertises nothing, and through which all others and the configurators go, as if each had a host."""
 PATIENCE = 30.0
@@ -167,8 +171,10 @@ class Ecology:
     `halt` is set, whatever waits in it raises `Halted`; it can be closed all the same.
     """
 
-    def __init__(self, folder: Path, through_hub: bool = False, halt: threading.Event | None = None) -> None:
-        self.name = f"faults-{secrets.token_hex(3)}"
+    def __init__(
+        self, folder: Path, through_hub: bool = False, halt: threading.Event | None = None, rival: bool = False
+    ) -> None:
+        self.name, self._rival = f"faults-{secrets.token_hex(3)}", rival
         self._hub = with_port("tcp/127.0.0.1:0") if through_hub else ""
         runtime = folder / self.name
         runtime.mkdir()
@@ -194,7 +200,7 @@ class Ecology:
 
     def start_site(self, name: str) -> None:
         """Start a site, and wait until it serves."""
-        where = ("site", str(self._advertisements(name)), "--ecology", self.name, "--name", name)
+        where = ("site", *map(str, self._advertisements(name)), "--ecology", self.name, "--name", name)
         site = Program(self._environment_of(name), *where, *(("--listen", self._hub) if name == HUB else ()))
         self.programs.append(site)
         self.sites[name] = site
@@ -206,10 +212,10 @@ class Ecology:
         if not serves():
             raise RuntimeError(f"site {name} does not begin: {site.lines}")
 
-    def _advertisements(self, name: str) -> Path:
+    def _advertisements(self, name: str) -> list[Path]:
         folder = ADVERTISEMENTS / name if name in SITES else self._runtime / name / "ads"
         folder.mkdir(parents=True, exist_ok=True)
-        return folder
+        return [folder, ADVERTISEMENTS / "rival"] if self._rival and name == RIVALS_SITE else [folder]
 
     def _environment_of(self, name: str) -> dict[str, str]:
         """What a site is told: where all go through a hub, a folder of its own, as on a host of its own."""
@@ -226,9 +232,9 @@ class Ecology:
         self.programs.append(program)
         return program
 
-    def run(self) -> Program:
+    def run(self, task: Path = TASK) -> Program:
         """Start a configurator that waits if it must."""
-        return self.start("run", str(TASK), "--wait", "--format", "json", "--ecology", self.name)
+        return self.start("run", str(task), "--wait", "--format", "json", "--ecology", self.name)
 
     def until(self, condition: Callable[[], bool], seconds: float) -> bool:
         """Read what everybody says until a condition holds; whether it does in time."""

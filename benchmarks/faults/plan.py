@@ -6,7 +6,7 @@ import random
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from benchmarks.faults.actor import OUTPUTS
+from benchmarks.faults.actor import OUTPUTS, RIVAL_OUTPUTS
 from benchmarks.faults.ecology import HUB, SITES
 
 PHASES = {
@@ -25,6 +25,8 @@ KINDS = {"kill": 0.0, "end": 0.0, "stop 0.5 s": 0.5, "stop 2 s": 2.0, "stop 10 s
 VICTIMS = ("component", "component", "site", "configurator", "configurator")
 ROUTED_VICTIMS = ("router", "router", *VICTIMS)
 """Whom it happens to where all go through a router."""
+LEADS = (0.0, 0.03, 0.2, 0.5, 1.5)
+"""By how many seconds a rival of the task may begin before the first fault."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,23 +50,27 @@ class Plan:
     trial: str
     phase: str
     faults: tuple[Fault, ...]
+    lead: float | None = None
+    """The seconds by which a rival of the task begins before the first fault, if one does."""
 
     def __str__(self) -> str:
-        return f"{self.phase}: {', then '.join(map(str, self.faults))}"
+        rival = "" if self.lead is None else f"a rival {self.lead:g} s before "
+        return f"{self.phase}: {rival}{', then '.join(map(str, self.faults))}"
 
-    @property
-    def ends_the_configurator(self) -> bool:
-        """Whether the configurator is killed, or told to end."""
-        return any(fault.victim == "configurator" and not KINDS[fault.kind] for fault in self.faults)
+    def ends(self, victim: str) -> bool:
+        """Whether a victim is killed, or told to end."""
+        return any(fault.victim == victim and not KINDS[fault.kind] for fault in self.faults)
 
 
-def plan(seed: int, number: int, longest: float, victims: Sequence[str] = VICTIMS) -> Plan:
+def plan(seed: int, number: int, longest: float, victims: Sequence[str] = VICTIMS, rival: bool = False) -> Plan:
     """The plan of a trial; nobody stands still for longer than `longest` seconds."""
     chance = random.Random(f"{seed}/{number}")
+    actors = sorted(OUTPUTS | RIVAL_OUTPUTS if rival else OUTPUTS)
+    victims = (*victims, "rival", "rival") if rival else victims
 
     def fault(delay: float) -> Fault:
         victim = chance.choice(victims)
-        names = {"component": chance.choice(sorted(OUTPUTS)), "site": chance.choice(SITES), "router": HUB}
+        names = {"component": chance.choice(actors), "site": chance.choice(SITES), "router": HUB}
         name = names.get(victim, victim)
         kind = chance.choice([kind for kind, seconds in KINDS.items() if seconds <= longest])
         return Fault(victim, kind, name, delay)
@@ -72,4 +78,5 @@ def plan(seed: int, number: int, longest: float, victims: Sequence[str] = VICTIM
     faults = [fault(chance.choice((0.0, 0.001, 0.005, 0.03, 0.2)))]
     if chance.random() < 0.25:
         faults.append(fault(chance.choice((0.0, 0.05, 0.5, 1.5))))
-    return Plan(f"{seed}/{number}", chance.choice(sorted(PHASES)), tuple(faults))
+    phase = chance.choice(sorted(PHASES))
+    return Plan(f"{seed}/{number}", phase, tuple(faults), chance.choice(LEADS) if rival else None)

@@ -9,12 +9,14 @@ import json
 import os
 import signal
 import time
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Callable, Container, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 
-from benchmarks.faults.ecology import PATIENCE, Ecology, Sign, lives_at_once
+from benchmarks.faults.actor import OUTPUTS, RIVAL_OUTPUTS
+from benchmarks.faults.ecology import PATIENCE, RIVAL, Ecology, Program, Sign, lives_at_once
 from benchmarks.faults.plan import KINDS, PHASES, Fault, Plan
 
 GRACE = 1.0
@@ -36,12 +38,16 @@ PROMISES = {
     "without its configurator nobody acts": LEASE + GRACE + SLACK,
     "no component acts in two processes at once": LEASE + GRACE + SLACK,
     "the drive does not act blind": LEASE + 2 * GRACE + SLACK,
+    "a rival of higher priority runs": HEALS,
+    "the drive heeds one task at a time": SLACK,
     "status names the task that runs": 10.0,
     "once a run has ended nobody acts": SLACK,
     "Ctrl-C ends the run with exit code 0": 15.0,
     "no process is left when its site has ended": 5.0,
 }
 """What is looked at, with the seconds that it may take."""
+RIVALS = frozenset({"sonar", "veer", "drive"})
+"""Who acts for the rival: it shares the sonar with the task."""
 
 
 @dataclass(slots=True)
@@ -71,6 +77,7 @@ class Trial:
         self.ecology, self.plan = ecology, planned
         self.outcome = Outcome(planned.trial, str(planned))
         self.configurator = ecology.run()
+        self.rival: Program | None = None
         self._stopped: list[tuple[float, int]] = []
         """The processes that stand still, with the time at which they go on."""
         self._restart: list[tuple[float, str]] = []
@@ -81,10 +88,16 @@ class Trial:
     def carry_out(self) -> Outcome:
         """Wait for the phase, let the faults happen, and look at every promise."""
         self._await_phase()
+        if self.plan.lead is not None:
+            self.rival = self.ecology.run(RIVAL)
+            self._wait(self.plan.lead)
         for fault in self.plan.faults:
             self._wait(fault.delay)
             self._do(fault)
         self._look_for_orphans()
+        self._settle()
+        if self.rival is not None:
+            self._judge_rival(self.rival)
         self._heal()
         self._judge_signs()
         self._judge_status()
@@ -95,12 +108,12 @@ class Trial:
         """Add to what happened, at a time of the monotonic clock."""
         self.outcome.history.append((clock, what))
 
-    def _forget_configurator(self) -> None:
+    def _forget(self, configurator: Program, who: str = "") -> None:
         """Read a configurator that has ended, or is given up, no more."""
-        self.ecology.forget(self.configurator)
+        self.ecology.forget(configurator)
         ahead = time.time() - time.monotonic()
-        for event in self.configurator.events:
-            self._remember(json.dumps(event), event["time"] - ahead)
+        for event in configurator.events:
+            self._remember(who + json.dumps(event), event["time"] - ahead)
 
     # What happens.
 
@@ -132,8 +145,9 @@ class Trial:
     def _process(self, fault: Fault) -> int | None:
         if fault.victim == "component":
             return self.ecology.witnesses.process_of(fault.name)
-        program = self.configurator if fault.victim == "configurator" else self.ecology.sites[fault.name]
-        return program.number if program.ended is None else None
+        configurators = {"configurator": self.configurator, "rival": self.rival}
+        program = configurators[fault.victim] if fault.victim in configurators else self.ecology.sites[fault.name]
+        return program.number if program is not None and program.ended is None else None
 
     def _do(self, fault: Fault) -> None:
         process = self._process(fault)
@@ -168,9 +182,6 @@ class Trial:
                 return
             self.ecology.let_pass(min(until - now, 0.02))
 
-    def _settled(self) -> bool:
-        return not self._stopped and not self._restart
-
     # What is looked at.
 
     def _look_for_orphans(self) -> None:
@@ -183,7 +194,8 @@ class Trial:
         bound = PROMISES[promise]
         self._wait(bound + 0.3)
         acting = self.ecology.witnesses.acting(fell)
-        acting = [sign for sign in acting if not self._was_still(sign.time, "configurator")]
+        others = RIVALS if self.rival is not None else frozenset()
+        acting = [s for s in acting if s.name not in others and not self._was_still(s.time, "configurator")]
         last = max((sign.time for sign in acting), default=fell) - fell
         self.outcome.judge(promise, last, _names([sign for sign in acting if sign.time > fell + bound]))
 
@@ -191,37 +203,64 @@ class Trial:
         """Whether somebody stood still then, or shortly before, other than the one that is left out."""
         return any(begin <= moment <= end + LEASE + GRACE for who, begin, end in self._still if who != but)
 
+    def _settle(self) -> None:
+        """Wait until all that stood still goes on, and what was to come back is back."""
+        while self._stopped or self._restart:
+            self._wait(0.05)
+
     def _heal(self) -> None:
         """Wait until the task runs again; where its configurator is gone, another one is begun."""
-        while not self._settled():
-            self._wait(0.05)
-        if self.configurator.ended is not None or self.plan.ends_the_configurator:
-            self.ecology.until(lambda: self.configurator.ended is not None, 10.0)
-            if self.configurator.ended is None:
-                self.outcome.judge("Ctrl-C ends the run with exit code 0", 99.0, "it does not end")
-            self._forget_configurator()
+        if self.configurator.ended is not None or self.plan.ends("configurator"):
+            self._await_end(self.configurator)
+            self._forget(self.configurator)
             self.configurator = self.ecology.run()
         self._await_running()
 
+    def _await_end(self, configurator: Program) -> None:
+        """Wait for a configurator that was killed, or told to end."""
+        self.ecology.until(lambda: configurator.ended is not None, 10.0)
+        if configurator.ended is None:
+            self.outcome.judge("Ctrl-C ends the run with exit code 0", 99.0, "it does not end")
+
     def _await_running(self) -> None:
         """Wait until the task has run for a while, and judge how long that took."""
+        took = self._until_steady(self._runs)
+        self.outcome.judge("after the fault the task is running again", took, f"acts: {self.configurator.acts[-6:]}")
+
+    def _until_steady(self, runs: Callable[[], bool]) -> float:
+        """Wait until a task has run for a while; return after how many seconds it began to."""
         began = steady = time.monotonic()
         while time.monotonic() < min(steady + STEADY, began + HEALS + STEADY):
             self._wait(0.05)
-            if not self._runs():
+            if not runs():
                 steady = time.monotonic()
-        took = steady - began
-        self.outcome.judge("after the fault the task is running again", took, f"acts: {self.configurator.acts[-6:]}")
+        return steady - began
 
     def _runs(self) -> bool:
         """Whether all five act, in the eyes of the witness, and the configurator says so."""
-        self.configurator.read()
-        states = [act for act in self.configurator.acts if act in STATES]
-        if not states or states[-1] != "running":
-            return False
-        now = time.monotonic()
-        acting = {sign.name for sign in self.ecology.witnesses.acting(now - 0.3)}
+        acting = self._acting_for(self.configurator)
         return len(acting) == 5 and {"sonar", "encoder", "control", "drive"} < acting
+
+    def _acting_for(self, configurator: Program) -> set[str]:
+        """Who acts, in the eyes of the witness, if a configurator says that its task runs; else nobody."""
+        configurator.read()
+        states = [act for act in configurator.acts if act in STATES]
+        if not states or states[-1] != "running":
+            return set()
+        return {sign.name for sign in self.ecology.witnesses.acting(time.monotonic() - 0.3)}
+
+    def _judge_rival(self, rival: Program) -> None:
+        """Look whether the rival of the task has run, and end it; nobody acts for it then."""
+        if self.plan.ends("rival"):
+            self._await_end(rival)
+        else:
+            took = self._until_steady(lambda: self._acting_for(rival) == RIVALS)
+            self.outcome.judge("a rival of higher priority runs", took, f"acts: {rival.acts[-6:]}")
+            self._end(rival)
+        over = time.monotonic() + (LEASE + GRACE if self.plan.ends("rival") else 0.0)
+        self._wait(over - time.monotonic() + PROMISES["once a run has ended nobody acts"] + 0.2)
+        self._judge_late(over, RIVAL_OUTPUTS)
+        self._forget(rival, "rival: ")
 
     def _judge_signs(self) -> None:
         signs = self.ecology.witnesses.acting(self.began)
@@ -230,6 +269,20 @@ class Trial:
         self.outcome.judge("no component acts in two processes at once", longest, str(doubles))
         blind = max(self._blind(), default=0.0)
         self.outcome.judge("the drive does not act blind", blind)
+        if self.plan.lead is not None:
+            self.outcome.judge("the drive heeds one task at a time", self._heeds_both())
+
+    def _heeds_both(self) -> float:
+        """For how many seconds at a time the drive heeded both tasks, one tenth after the other."""
+        tenths: defaultdict[int, set[str]] = defaultdict(set)
+        for sign in self.ecology.witnesses.signs:
+            if sign.what.startswith("heeds") and sign.time >= self.began:
+                tenths[int(sign.time * 10)].add(sign.what)
+        longest = now = 0
+        for tenth in range(min(tenths, default=0), max(tenths, default=0) + 1):
+            now = now + 1 if len(tenths.get(tenth, ())) > 1 else 0
+            longest = max(longest, now)
+        return longest / 10
 
     def _blind(self) -> Iterator[float]:
         """For how many seconds the drive acted, at each sign of it, without anybody who controls it."""
@@ -237,7 +290,7 @@ class Trial:
         for sign in self.ecology.witnesses.signs:
             if sign.time < self.began:
                 continue
-            if sign.name == "control" or (sign.name == "drive" and sign.what == "started"):
+            if sign.name in ("control", *RIVAL_OUTPUTS) or (sign.name == "drive" and sign.what == "started"):
                 controlled = sign.time
             elif sign.name == "drive" and sign.what == "acts" and not self._drive_was_still(sign.time):
                 yield sign.time - (controlled or sign.time)
@@ -271,23 +324,31 @@ class Trial:
         return seconds, said
 
     def _judge_end(self) -> None:
-        self.configurator.send(signal.SIGINT)
-        began = time.monotonic()
-        ended = self.ecology.until(lambda: self.configurator.ended is not None, 15.0)
-        took = time.monotonic() - began
-        good = ended and self.configurator.ended == 0
-        promise = "Ctrl-C ends the run with exit code 0"
-        self.outcome.judge(promise, took if good else 99.0, f"exit code {self.configurator.ended}")
+        self._end(self.configurator)
         over = time.monotonic()
         self.ecology.let_pass(PROMISES["once a run has ended nobody acts"] + 0.2)
-        late = self.ecology.witnesses.acting(over)
-        last = max((sign.time for sign in late), default=over) - over
-        self.outcome.judge("once a run has ended nobody acts", last, _names(late))
-        self._forget_configurator()
+        self._judge_late(over, OUTPUTS | RIVAL_OUTPUTS)
+        self._forget(self.configurator)
         for sign in self.ecology.witnesses.signs:
-            if sign.what != "acts":
+            if sign.what in ("born", "started", "stopped"):
                 self._remember(f"{sign.name} {sign.process} {sign.what}", sign.time)
         self.ecology.witnesses.forget(time.monotonic())
+
+    def _end(self, configurator: Program) -> None:
+        """End a run by Ctrl-C."""
+        configurator.send(signal.SIGINT)
+        began = time.monotonic()
+        ended = self.ecology.until(lambda: configurator.ended is not None, 15.0)
+        took = time.monotonic() - began
+        good = ended and configurator.ended == 0
+        promise = "Ctrl-C ends the run with exit code 0"
+        self.outcome.judge(promise, took if good else 99.0, f"exit code {configurator.ended}")
+
+    def _judge_late(self, over: float, names: Container[str]) -> None:
+        """Look whether one of some components has acted after the run was over."""
+        late = [sign for sign in self.ecology.witnesses.acting(over) if sign.name in names]
+        last = max((sign.time for sign in late), default=over) - over
+        self.outcome.judge("once a run has ended nobody acts", last, _names(late))
 
 
 def _names(signs: list[Sign]) -> str:

@@ -14,10 +14,10 @@ import pytest
 
 from benchmarks.faults import __main__ as faults_program
 from benchmarks.faults.__main__ import Series, report
-from benchmarks.faults.actor import ADVERTISEMENTS, OUTPUTS
+from benchmarks.faults.actor import ADVERTISEMENTS, OUTPUTS, RIVAL_OUTPUTS
 from benchmarks.faults.ecology import HUB, Ecology, Halted, Sign, lives_at_once
-from benchmarks.faults.plan import KINDS, PHASES, ROUTED_VICTIMS, Plan, plan
-from benchmarks.faults.trial import PROMISES, Outcome, Trial
+from benchmarks.faults.plan import KINDS, LEADS, PHASES, ROUTED_VICTIMS, Plan, plan
+from benchmarks.faults.trial import PROMISES, RIVALS, Outcome, Trial
 from tests.benchmarks.short_run import short_run
 from tests.harness.effort import thorough
 
@@ -51,6 +51,37 @@ def test_where_all_go_through_a_router_it_is_hit_by_every_fault_too() -> None:
     assert {fault.name for one in plans for fault in one.faults if fault.victim == "router"} == {HUB}
 
 
+def test_a_rival_and_what_it_needs_have_every_fault_too() -> None:
+    plans = [plan(1, number, 10.0, rival=True) for number in range(500)]
+    assert {one.lead for one in plans} == set(LEADS)
+    for victim in ("rival", *RIVAL_OUTPUTS):
+        assert {one.faults[0].kind for one in plans if one.faults[0].name == victim} == set(KINDS)
+    assert {plan(1, number, 10.0).lead for number in range(20)} == {None}
+
+
+def test_a_drive_that_heeds_two_tasks_at_a_time_is_noticed() -> None:
+    ecology = Watched()
+    trial = Trial(ecology, Plan("1/0", "running", (), 0.0))  # type: ignore[arg-type]  # only its signs are looked at
+    first = [Sign("drive", 1, "heeds the task", trial.began + moment / 10) for moment in range(1, 20)]
+    then = [Sign("drive", 1, "heeds the rival", trial.began + moment / 10) for moment in range(20, 40)]
+    ecology.witnesses.signs = [*first, *then]
+    assert trial._heeds_both() <= 0.1
+    both = [Sign("drive", 1, "heeds the rival", trial.began + moment / 10) for moment in range(10, 40)]
+    ecology.witnesses.signs = [*first, *both]
+    assert trial._heeds_both() == pytest.approx(1.0, abs=0.11)
+
+
+class Watched:
+    """An ecology of which only the signs are looked at."""
+
+    def __init__(self) -> None:
+        self.witnesses = self
+        self.signs: list[Sign] = []
+
+    def run(self) -> None:
+        """Begin nothing."""
+
+
 def test_two_processes_that_act_at_once_are_noticed_and_one_after_the_other_is_not() -> None:
     first = [Sign("drive", 1, "acts", moment / 10) for moment in range(10)]
     then = [Sign("drive", 2, "acts", moment / 10) for moment in range(10, 20)]
@@ -71,7 +102,9 @@ def test_the_table_counts_what_was_broken() -> None:
 
 
 def test_every_actor_has_an_advertisement() -> None:
-    assert {path.stem for path in ADVERTISEMENTS.glob("*/*.ttl")} == set(OUTPUTS)
+    advertised = {path.stem for path in ADVERTISEMENTS.glob("*/*.ttl")}
+    assert advertised - {"reflex"} == OUTPUTS.keys() | RIVAL_OUTPUTS.keys()  # a composite has no process
+    assert advertised > RIVALS
 
 
 class Quiet:
@@ -79,7 +112,7 @@ class Quiet:
 
     made: ClassVar[list[Quiet]] = []
 
-    def __init__(self, folder: Path, routed: bool, halt: threading.Event) -> None:
+    def __init__(self, folder: Path, routed: bool, halt: threading.Event, rival: bool) -> None:
         self.halt, self.closed = halt, False
         self.made.append(self)
 
