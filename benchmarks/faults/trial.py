@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 from functools import partial
 
 from benchmarks.faults.actor import OUTPUTS, RIVAL_OUTPUTS
-from benchmarks.faults.ecology import PATIENCE, RIVAL, Ecology, Program, Sign, lives_at_once
+from benchmarks.faults.ecology import HUB, PATIENCE, RIVAL, Ecology, Program, Sign, lives_at_once
 from benchmarks.faults.plan import KINDS, PHASES, Fault, Plan
 
 GRACE = 1.0
@@ -199,6 +199,10 @@ class Trial:
         last = max((sign.time for sign in acting), default=fell) - fell
         self.outcome.judge(promise, last, _names([sign for sign in acting if sign.time > fell + bound]))
 
+    def _was_hit(self, name: str) -> bool:
+        """Whether a fault of the plan names somebody."""
+        return any(fault.name == name for fault in self.plan.faults)
+
     def _was_still(self, moment: float, but: str = "") -> bool:
         """Whether somebody stood still then, or shortly before, other than the one that is left out."""
         return any(begin <= moment <= end + LEASE + GRACE for who, begin, end in self._still if who != but)
@@ -251,13 +255,17 @@ class Trial:
 
     def _judge_rival(self, rival: Program) -> None:
         """Look whether the rival of the task has run, and end it; nobody acts for it then."""
-        if self.plan.ends("rival"):
+        is_ended = self.plan.ends("rival")
+        if self._was_hit(HUB) and self.ecology.until(lambda: rival.ended == 2 and not rival.acts, STEADY):
+            self._forget(rival, "rival: ")  # a run that begins while nobody can be reached ends, and says so
+            rival, is_ended = self.ecology.run(RIVAL), False
+        if is_ended:
             self._await_end(rival)
         else:
             took = self._until_steady(lambda: self._acting_for(rival) == RIVALS)
             self.outcome.judge("a rival of higher priority runs", took, f"acts: {rival.acts[-6:]}")
             self._end(rival)
-        over = time.monotonic() + (LEASE + GRACE if self.plan.ends("rival") else 0.0)
+        over = time.monotonic() + (LEASE + GRACE if is_ended else 0.0)
         self._wait(over - time.monotonic() + PROMISES["once a run has ended nobody acts"] + 0.2)
         self._judge_late(over, RIVAL_OUTPUTS)
         self._forget(rival, "rival: ")
