@@ -395,6 +395,43 @@ def _allowed(chance: Chance, variable: Variable) -> int:
     return ~some if not some or chance.below(4) == 0 else some
 
 
+def packings() -> st.SearchStrategy[Problem]:
+    """Problems as `a_packing` makes them."""
+    return by_chance(a_packing)
+
+
+def a_packing(chance: Chance) -> Problem:
+    """A problem of one or two roles of several slots, whose candidates mostly admit values of their own.
+
+    So two exclude each other where they constrain one variable, as dominoes do that would lie on one field.
+    """
+    sizes = [chance.number(2, 7) for _ in range(chance.number(1, 2))]
+    many, each = chance.number(2, 6), chance.number(1, 3)
+    own = [0] * many
+    parts = []
+    for role, size in enumerate(sizes):
+        some = []
+        for number in range(size):
+            masks = [ANY_VALUE] * many
+            for variable in chance.some(range(many), min(each, many), min(each + chance.below(2), many)):
+                masks[variable] = 1 << own[variable]
+                own[variable] += 1
+                if not chance.below(30):
+                    masks[variable] |= 1  # a value that another one has, too
+            some.append(Candidate(Profile(iri(f"c{role}.{number}")), tuple(masks)))
+        parts.append(tuple(some))
+    width = max(own)
+    variables = tuple(Variable(iri(f"v{k}"), tuple(iri(f"v{k}.{n}") for n in range(width))) for k in range(many))
+    asked = [chance.number(1, min(4, size)) for size in sizes]
+    template = Template(
+        iri("template"),
+        tuple(Role(iri(f"r{k}"), slots, slots) for k, slots in enumerate(asked)),
+        (),
+        tuple(Parameter(one.parameter, one.parameter.short, in_shape=True) for one in variables),
+    )
+    return Problem(Task(template), Partition(tuple(parts), variables))
+
+
 def rivalries(roles: int = 5, values: int = 4) -> st.SearchStrategy[Problem]:
     """Problems as `a_rivalry` makes them."""
     return by_chance(lambda chance: a_rivalry(chance, roles, values))

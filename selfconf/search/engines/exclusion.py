@@ -4,8 +4,9 @@ A *group* is a set of options that exclude each other pairwise (a clique of the 
 frequency" may be wired by port names, pair by pair, and is a group for each frequency in the end. Groups are grown
 greedily until each conflict that is counted here is in one of them, so that they say all that these needs say; one
 constraint with many options propagates like all of its pairs, in a fraction of the space.
-Where each role that constrains a free parameter admits other values of it than all other roles, the options that
-constrain it are a group too: "who has the room at nine" lets one lecture have it.
+Where each role that constrains a free parameter admits other values of it than all other roles, and each option of a
+role of several slots other values than all other options, the options that constrain it are a group too: "who has the
+room at nine" lets one lecture have it.
 
 Where no three roles have conflicts with each other, as between items and the bins that take some of them, groups would
 be of two roles each, which say no more than the needs do, and are not counted: there needs stay needs.
@@ -36,6 +37,8 @@ SHARE_EXCLUDING = 16
 """One in this number of all needs at least has to be fed by one role alone, and often, or none is looked at."""
 SHARE_APART = 2
 """The first options of roles have to differ in one in this number of the variables, or values are not looked at."""
+FIRST_OPTIONS = 64
+"""How many of its options are the first ones of a role of several slots."""
 
 
 def exclusive_groups(reduced: ReducedProblem, distinct: bool = True, patience: int | None = None) -> ExclusiveGroups:
@@ -62,34 +65,33 @@ def exclusive_groups(reduced: ReducedProblem, distinct: bool = True, patience: i
 
 
 def _groups_of_values(reduced: ReducedProblem) -> dict[int, list[int]]:
-    """Return by variable the options that constrain it, where no value of it suits two roles, each of one slot.
+    """Return by variable the options that constrain it, where no value of it suits two that could play at once.
 
     As each option has some value, that one of them plays at most is all that the variable says; where they are of one
-    role that is nothing, and no options are returned.
+    role with one slot that is nothing, and no options are returned.
     """
     if not _often_apart(reduced):
         return {}
     asked = Counter(reduced.slots)
     found: dict[int, list[int]] = {}
     for variable, some in enumerate(reduced.constraining()):
-        admitted: dict[int, int] = {}
-        for role, _, mask in some:
-            admitted[role] = admitted.get(role, 0) | mask
-        if (
-            _disjoint(admitted.values())
-            and all(asked[role] == 1 for role in admitted)
-            and all(mask > 0 for _, _, mask in some)
-        ):
+        admitted: dict[tuple[int, int], int] = {}
+        for role, number, mask in some:
+            player = role, number if asked[role] > 1 else 0
+            admitted[player] = admitted.get(player, 0) | mask
+        if _disjoint(admitted.values()) and all(mask > 0 for _, _, mask in some):
             found[variable] = [number for _, number, _ in some] if len(admitted) > 1 else []
     return found
 
 
 def _often_apart(reduced: ReducedProblem) -> bool:
     """Return whether the first options of the roles that constrain a variable mostly admit other values of it each."""
+    asked = Counter(reduced.slots)
     firsts: defaultdict[int, list[int]] = defaultdict(list)
-    for options in reduced.options if reduced.values else ():
-        for variable, mask in options[0].kind.admits.items() if options else ():
-            firsts[variable].append(mask)
+    for role, options in enumerate(reduced.options if reduced.values else ()):
+        for option in options[: FIRST_OPTIONS if asked[role] > 1 else 1]:
+            for variable, mask in option.kind.admits.items():
+                firsts[variable].append(mask)
     apart = [_disjoint(masks) for masks in firsts.values() if len(masks) > 1]
     return bool(apart) and SHARE_APART * sum(apart) >= len(apart)
 

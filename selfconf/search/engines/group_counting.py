@@ -6,6 +6,11 @@ matching is in no solution; and if they have exactly as many, each of these grou
 clause learning nor depth-first search sees in less than exponential time (pigeonholes, Latin squares). Nothing here
 depends on the order of options: what is removed or added is false or true of every solution.
 
+An option of a role may also be in several groups, as a domino is in those of two fields. Each slot of a role then takes
+as many groups as the options of the role are in at least; all slots together take no more than there are; and if they
+take exactly as many, each group is played, and no option that is in more. The same is counted of sets of groups that
+options meet several times over (`odd_sets`).
+
 *Which groups.* From a group, its roles; then the group, disjoint from those before, that has options not covered yet in
 the most of these roles, which may bring in further roles; until all their options are covered, or there are more groups
 than slots, or are going to be: an option has an equal part in the slots of its role, so that no more groups than slots
@@ -14,18 +19,21 @@ need a slot each between their options, on average.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
+from itertools import chain
 
 from selfconf.model.immutable import immutable
 from selfconf.search.engines.conflict_graph import ConflictGraph, mask_of, numbers_of
 from selfconf.search.engines.matching import HallSet, unmatchable
+from selfconf.search.engines.odd_sets import odd_sets
 
 SHARES_PER_OPTION = 2
 """How many groups are put together at most, for each option, before counting ends."""
 ENOUGH = 1 - 1e-9
 """A share of one slot, but for rounding."""
 SPREAD = 4
-"""For each role of the group from which it began how many groups are put together at most."""
+"""For each slot of the roles of the group from which it began how many groups are put together at most."""
 
 
 @immutable
@@ -41,6 +49,8 @@ class ExclusiveGroups:
     """Sets of options of which at least one plays in every solution."""
     excluded: frozenset[int] = frozenset()
     """Options that play in no solution."""
+    limited: Sequence[tuple[Sequence[int], int]] = ()
+    """Sets of options, each with how many of them play at most."""
     crowded: frozenset[int] = frozenset()
     """Roles that have fewer groups than slots, if there are any: then there is no solution."""
     uncounted: GroupCounting | None = None
@@ -62,7 +72,7 @@ class GroupCounting:
     def __init__(self, graph: ConflictGraph, groups: Sequence[Sequence[int]]) -> None:
         self.graph = graph
         self.groups: list[int] = []
-        """The groups of more than two roles, as masks."""
+        """The groups of which more than two slots could have an option, as masks."""
         self.roles: list[frozenset[int]] = []
         """The roles of each of these."""
         self.having: list[list[int]] = [[] for _ in graph.options]
@@ -73,14 +83,11 @@ class GroupCounting:
         weights = [sum([part[option] for option in members]) for members in groups]
         self.part = part
         """The part of each option in the slots of its role."""
-        for members, weight in zip(groups, weights, strict=True) if max(weights, default=0) >= ENOUGH else ():
-            roles = frozenset([graph.role[option] for option in members])
-            if len(roles) > 2:
-                for option in members:
-                    self.having[option].append(len(self.groups))
-                self.groups.append(mask_of(members))
-                self.roles.append(roles)
-                self.weights.append(weight)
+        self.several = [role for role, slots in graph.asked.items() if slots > 1 and graph.of_role[role]]
+        """The roles of several slots that have options."""
+        if self.several or max(weights, default=0) >= ENOUGH:
+            for members, weight in zip(groups, weights, strict=True):
+                self._add(members, weight)
         self.gain = sum([weight - 1 for weight in self.weights if weight > 1])
         """By how much all groups that have more than one slot between them have more."""
         self.left = SHARES_PER_OPTION * len(graph.options)
@@ -92,20 +99,38 @@ class GroupCounting:
         self._known: set[int] = set()
         self.played: list[int] = []
         self.excluded = 0
+        self.limited: dict[frozenset[int], int] = {}
         self.crowded: frozenset[int] = frozenset()
+
+    def _add(self, members: Sequence[int], weight: float) -> None:
+        """Count a group if more than two slots could have an option of it."""
+        graph = self.graph
+        roles = frozenset([graph.role[option] for option in members])
+        if sum([graph.asked[role] for role in roles]) > 2:
+            for option in members:
+                self.having[option].append(len(self.groups))
+            self.groups.append(mask_of(members))
+            self.roles.append(roles)
+            self.weights.append(weight)
 
     def _roles(self, mask: int) -> Iterator[int]:
         return (self.graph.role[number] for number in numbers_of(mask))
 
     def counted(self, groups: Sequence[Sequence[int]], patience: int | None = None) -> ExclusiveGroups:
         """Count, and return the groups with what follows from them by now."""
+        begins = not self._known
+        if begins:
+            self._count_at_once()
         self._run(patience)
+        if begins and not self.crowded:
+            self._count_odd_sets()
         return ExclusiveGroups(
             groups,
             frozenset(self.graph.stated),
             self.graph.settled,
             [list(numbers_of(group)) for group in self.played],
             frozenset(numbers_of(self.excluded)),
+            [(sorted(options), most) for options, most in self.limited.items()],
             self.crowded,
             self if self.starts and self.left > 0 and not self.crowded else None,
         )
@@ -126,6 +151,42 @@ class GroupCounting:
             if patience is not None:
                 patience = None if self.played or self.excluded else patience - 1
 
+    def _count_at_once(self) -> None:
+        """Count the groups that all slots of a role take between them, whose options are in several groups each."""
+        graph = self.graph
+        for role in self.several:
+            taken = {number: len(self.having[number]) for number in numbers_of(graph.of_role[role])}
+            least = min(taken.values())
+            if least < 2:
+                continue
+            met = {group for number in taken for group in self.having[number]}
+            spare = len(met) - least * graph.asked[role]
+            if spare < 0:
+                self.crowded = frozenset((role,))
+                return
+            self.excluded |= mask_of([number for number, groups in taken.items() if groups > least + spare])
+            if not spare:
+                self.played += [self.groups[group] & graph.of_role[role] for group in sorted(met)]
+                for group in met:
+                    self.excluded |= self.groups[group] & ~graph.of_role[role]
+
+    def _count_odd_sets(self) -> None:
+        """Count how many options play at most, by sets of groups, where slots take several groups each."""
+        graph = self.graph
+        several = [
+            role
+            for role in self.several
+            if all(len(self.having[number]) > 1 for number in numbers_of(graph.of_role[role]))
+        ]
+        if not several:
+            return
+        self.limited = odd_sets([list(numbers_of(group)) for group in self.groups], self.having)
+        in_sets = Counter(chain.from_iterable(self.limited))
+        for role in several:
+            least = min(in_sets[number] for number in numbers_of(graph.of_role[role]))
+            if sum(self.limited.values()) < least * graph.asked[role]:
+                self.crowded = frozenset((role,))
+
     def _cover(self, start: int, shares: dict[int, int]) -> bool:
         """Put together groups, by number, with disjoint shares of them, until these cover all options of their roles.
 
@@ -133,7 +194,7 @@ class GroupCounting:
         """
         graph = self.graph
         roles: set[int] = set()
-        covered = wanted = slots = 0
+        covered = wanted = slots = beside = 0
         surplus, gain = 0.0, self.gain
         best: int | None = start
         while best is not None:
@@ -155,14 +216,30 @@ class GroupCounting:
             left = wanted & ~covered
             if not left:
                 return True
-            if len(shares) > min(slots, SPREAD * (8 + len(self.roles[start]))):
+            if len(shares) > min(slots, SPREAD * (8 + sum([graph.asked[role] for role in self.roles[start]]))):
                 return False
-            best = self._next(left, covered)
+            beside |= self._beside(share)
+            best = self._next(left & beside or left, left, covered)
         return False
 
-    def _next(self, left: int, covered: int) -> int | None:
-        """Return the group with the lowest of the options left that has the most of them, rather a disjoint one."""
-        lowest = (left & -left).bit_length() - 1
+    def _beside(self, share: int) -> int:
+        """Return the options that are in groups with options of a share, where roles have several slots.
+
+        There all options are of few roles, and groups that have next to nothing to do with each other would be put
+        together: fields of both colours of a board that dominoes cover.
+        """
+        beside = 0
+        for number in numbers_of(share) if self.several else ():
+            for group in self.having[number]:
+                beside |= self.groups[group]
+        return beside
+
+    def _next(self, first: int, left: int, covered: int) -> int | None:
+        """Return the group with the lowest of the first options that has the most of those left, rather a disjoint one.
+
+        None if that option is in no group.
+        """
+        lowest = (first & -first).bit_length() - 1
         found, most = None, -1
         whole = left.bit_count() + 1
         for number in self.having[lowest]:

@@ -25,10 +25,10 @@ from selfconf.search.problem import Problem
 from selfconf.search.reduction import ReducedProblem, pruned, reduced
 from tests.search.comparison import least_numbers, numbers
 from tests.search.oracle import World
-from tests.search.worlds import agreement, problems, rivalries
+from tests.search.worlds import agreement, packings, problems, rivalries
 
 
-@given(st.one_of(rivalries(), problems()))
+@given(st.one_of(rivalries(), packings(), problems()))
 @agreement()
 def test_groups_and_what_counting_proves_hold_in_every_solution(problem: Problem) -> None:
     given_ = pruned(reduced(problem))
@@ -42,11 +42,12 @@ def test_groups_and_what_counting_proves_hold_in_every_solution(problem: Problem
             continue  # a solution with a dominated candidate
         playing = {place[pair] for pair in pairs}
         assert all(len(playing & set(group)) <= 1 for group in found.groups)
+        assert all(len(playing & set(some)) <= most for some, most in found.limited)
         assert all(playing & set(some) for some in found.played)
         assert not playing & found.excluded
 
 
-@given(rivalries())
+@given(st.one_of(rivalries(), packings()))
 @agreement()
 def test_clause_learning_with_groups_finds_the_least_solution(problem: Problem) -> None:
     pytest.importorskip("pysat")
@@ -119,11 +120,18 @@ def test_where_groups_say_all_of_values_these_have_no_literals() -> None:
     assert Encoding(given_).top == sum(map(len, given_.options))
 
 
-def test_a_role_of_several_slots_may_have_one_value_in_all_of_them() -> None:
+def test_a_role_of_several_slots_draws_on_values_as_often() -> None:
     given_ = lectures(2, asked=2)
-    assert not exclusive_groups(given_).settled
-    assert least_by_clauses(given_, Budget()) is None  # four slots, three times, each of one lecture
+    assert exclusive_groups(given_).crowded == {0, 1}  # four slots, three times, each of one lecture
+    assert least_by_clauses(given_, Budget()) is None
     assert least_by_clauses(lectures(1, asked=2), Budget()) is not None
+
+
+def test_a_role_of_several_slots_may_have_one_value_in_all_of_them() -> None:
+    site = (Variable(iri("site"), tuple(map(iri, "nsew"))),)
+    parts = [[Candidate(profile(f"{name}{k}"), (values,)) for k in range(3)] for name, values in (("a", 3), ("b", 12))]
+    assert not exclusive_groups(pruned(reduced(counted(parts, [2, 2], (), site)))).settled
+    assert least_by_clauses(pruned(reduced(counted(parts[:1], [2], (), site))), Budget()) is not None
 
 
 def test_roles_that_may_agree_on_a_value_do_not_exclude_each_other() -> None:

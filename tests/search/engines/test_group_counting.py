@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from benchmarks.search.families.coverage import tiling, triples
 from benchmarks.search.families.graphs import frequencies, tour
 from benchmarks.search.families.puzzles import latin, pigeonholes, queens
 from selfconf.search.budget import Budget
@@ -29,6 +30,23 @@ def test_pigeonholes_through_ports_are_refused_by_counting(
 )
 def test_what_has_as_many_groups_as_slots_has_each_of_them_played(problem: Problem) -> None:
     assert exclusive_groups(pruned(reduced(problem))).played
+
+
+@pytest.mark.parametrize("aided", [True, False])
+def test_a_board_of_more_fields_of_one_colour_is_covered_by_no_dominoes(
+    aided: bool, request: pytest.FixtureRequest
+) -> None:
+    if not aided:
+        request.getfixturevalue("no_solvers")
+    assert solution(LazyReduction(tiling(10, 2, 1, fair=False)), Budget(20_000)) is None
+
+
+def test_what_covers_all_that_there_is_plays_an_option_of_each_group() -> None:
+    pytest.importorskip("pysat")
+    for problem, groups in ((tiling(8, 2, 1), 60), (triples(9, 12, 1), 36)):
+        assert len(exclusive_groups(pruned(reduced(problem))).played) >= groups
+        assert isinstance(solution(LazyReduction(problem), Budget(20_000)), list)
+    assert exclusive_groups(pruned(reduced(triples(9, 13, 1)))).crowded == {0}
 
 
 def test_counting_does_not_begin_from_a_group_that_was_put_together_before(monkeypatch: pytest.MonkeyPatch) -> None:
