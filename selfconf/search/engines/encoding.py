@@ -345,6 +345,4 @@ class Encoding(Formula):
             self.contradict()
         options = [literal for literals in self.plays for literal in literals]
         self.statements += [[options[number] for number in some] for some in known.played]
-        for some, most in known.limited:
-            self.at_most([options[number] for number in some], most)
         self.statements += [[-options[number]] for number in known.excluded]

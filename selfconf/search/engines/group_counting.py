@@ -49,8 +49,6 @@ class ExclusiveGroups:
     """Sets of options of which at least one plays in every solution."""
     excluded: frozenset[int] = frozenset()
     """Options that play in no solution."""
-    limited: Sequence[tuple[Sequence[int], int]] = ()
-    """Sets of options, each with how many of them play at most."""
     crowded: frozenset[int] = frozenset()
     """Roles that have fewer groups than slots, if there are any: then there is no solution."""
     uncounted: GroupCounting | None = None
@@ -99,7 +97,6 @@ class GroupCounting:
         self._known: set[int] = set()
         self.played: list[int] = []
         self.excluded = 0
-        self.limited: dict[frozenset[int], int] = {}
         self.crowded: frozenset[int] = frozenset()
 
     def _add(self, members: Sequence[int], weight: float) -> None:
@@ -130,7 +127,6 @@ class GroupCounting:
             self.graph.settled,
             [list(numbers_of(group)) for group in self.played],
             frozenset(numbers_of(self.excluded)),
-            [(sorted(options), most) for options, most in self.limited.items()],
             self.crowded,
             self if self.starts and self.left > 0 and not self.crowded else None,
         )
@@ -180,11 +176,11 @@ class GroupCounting:
         ]
         if not several:
             return
-        self.limited = odd_sets([list(numbers_of(group)) for group in self.groups], self.having)
-        in_sets = Counter(chain.from_iterable(self.limited))
+        sets = odd_sets([list(numbers_of(group)) for group in self.groups], self.having)
+        in_sets = Counter(chain.from_iterable(sets))
         for role in several:
             least = min(in_sets[number] for number in numbers_of(graph.of_role[role]))
-            if sum(self.limited.values()) < least * graph.asked[role]:
+            if sum(sets.values()) < least * graph.asked[role]:
                 self.crowded = frozenset((role,))
 
     def _cover(self, start: int, shares: dict[int, int]) -> bool:

@@ -20,6 +20,7 @@ from selfconf.search.engines.conflict_graph import ConflictGraph
 from selfconf.search.engines.encoding import Encoding
 from selfconf.search.engines.exclusion import exclusive_groups
 from selfconf.search.engines.least_solution import least_by_clauses
+from selfconf.search.engines.odd_sets import odd_sets
 from selfconf.search.engines.reduced_search import first_solution
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import ReducedProblem, pruned, reduced
@@ -34,6 +35,9 @@ def test_groups_and_what_counting_proves_hold_in_every_solution(problem: Problem
     given_ = pruned(reduced(problem))
     found = exclusive_groups(given_)
     options = [option for some in given_.options for option in some]
+    sets = odd_sets(
+        found.groups, [[k for k, some in enumerate(found.groups) if n in some] for n in range(len(options))]
+    )
     place = {(option.kind.role, option.number): number for number, option in enumerate(options)}
     for players in World(problem.task, problem.partition, problem.hierarchy).solutions():
         assert not found.impossible
@@ -42,7 +46,7 @@ def test_groups_and_what_counting_proves_hold_in_every_solution(problem: Problem
             continue  # a solution with a dominated candidate
         playing = {place[pair] for pair in pairs}
         assert all(len(playing & set(group)) <= 1 for group in found.groups)
-        assert all(len(playing & set(some)) <= most for some, most in found.limited)
+        assert all(len(playing & some) <= most for some, most in sets.items())
         assert all(playing & set(some) for some in found.played)
         assert not playing & found.excluded
 
