@@ -53,7 +53,9 @@ class InputSubscription:
         self._output = FollowedOutput(bus.now, queue, partial(code.signal, self._read))
         self._last_signal = LastSignal(bus, key, self._output)
         self._source = SourceWatch(bus, keys, wire, self._output, self._last_signal, lost)
-        self._silence = SilenceWatch(bus, wire.period, lambda: self._output.heard_at, self._be_silent)
+        self._silence = SilenceWatch(
+            bus, keys.lives(wire.component), wire.period, lambda: self._output.heard_at, self._be_silent
+        )
         self._declared = [bus.subscribe(key, self._output.receive, direct=True)]
         bus.later(SIGNALS_FIRST, self._watch)
 
