@@ -125,8 +125,16 @@ def _values(normal: NormalForm, values: ValueNormalForm) -> Iterator[ShapeContra
         culprit = _culprit(values.each, one[2], one)
         if culprit is not None:
             yield ShapeContradiction(one, culprit)
+    for shape in values.shapes:
+        for most, few in _counts(normal, shape, SH.qualifiedMaxCount):
+            for least, many in _counts(normal, shape, SH.qualifiedMinCount):
+                if least > most:
+                    yield ShapeContradiction(few, many)
     if needed is None:
         return
+    for shape in values.shapes:  # no value is less than itself
+        if values.path in [(other,) for other in normal.source.values(shape, SH.lessThan)]:
+            yield ShapeContradiction((shape, SH.lessThan, values.path[0]), needed[1])
     for one in values.each.own:
         if one[1] == SH["in"]:
             left = [value for value in normal.source.items(one[2]) if _culprit(values.each, value, one) is None]
@@ -134,6 +142,12 @@ def _values(normal: NormalForm, values: ValueNormalForm) -> Iterator[ShapeContra
             if len(literals) + len({value for value in left if not isinstance(value, Literal)}) < needed[0]:
                 yield ShapeContradiction(one, needed[1])
     yield from contradictions(values.each)
+
+
+def _counts(normal: NormalForm, shape: Node, predicate: Node) -> Iterator[tuple[int, ShapeStatement]]:
+    for count in normal.source.values(shape, predicate):
+        if isinstance(count, Literal) and isinstance(count.value, int):
+            yield count.value, (shape, predicate, count)
 
 
 def _culprit(normal: NormalForm, value: Node, besides: ShapeStatement) -> ShapeStatement | None:

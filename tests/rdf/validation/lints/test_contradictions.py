@@ -129,6 +129,8 @@ def test_no_component_conforms_to_what_is_called_impossible(
         "sh:datatype xsd:string",
         "sh:property [ sh:path sc:preference ; sh:hasValue :high ]",
         "sh:property [ sh:path sc:hasInput ; sh:hasValue 5 ]",
+        "sh:property [ sh:path :p ; sh:qualifiedValueShape [] ; sh:qualifiedMinCount 1 ; sh:qualifiedMaxCount 0 ]",
+        "sh:property [ sh:path :p ; sh:lessThan :p ; sh:minCount 1 ]",
     ],
 )
 def test_a_contradiction_is_found_wherever_its_two_sides_stand(shape: str) -> None:
@@ -162,6 +164,10 @@ def test_a_contradiction_is_found_wherever_its_two_sides_stand(shape: str) -> No
         "sh:property [ sh:path :p ; sh:minCount 1 ] ; sh:not [ sh:path :p ; sh:minCount 1 ; sh:not [ sh:class :A ] ]",
         "sh:property [ sh:path :p ; sh:minCount 1 ] ; sh:not [ sh:path :p ; sh:minCount 1 ; sh:or ( [ sh:in () ] ) ]",
         "sh:not [ sh:path ( :p :q ) ]",
+        "sh:property [ sh:path :p ; sh:qualifiedValueShape [] ; sh:qualifiedMinCount 1 ; sh:qualifiedMaxCount 1 ]",
+        "sh:property [ sh:path :p ; sh:lessThanOrEquals :p ; sh:minCount 1 ]",
+        "sh:property [ sh:path :p ; sh:lessThan :p ]",
+        "sh:property [ sh:path :p ; sh:lessThan :q ; sh:minCount 1 ]",
     ],
 )
 def test_what_a_component_could_conform_to_is_left_alone(shape: str) -> None:
