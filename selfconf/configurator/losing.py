@@ -28,19 +28,29 @@ def heed_failure(state: State, event: Failed) -> Reaction:
         return _ended_since(state, event), ()
     if state.phase is Phase.DISMANTLING:
         return state, ()
-    again = event.life and not held.life and state.ended_lives.get(event.component) == event.life
-    if again and (event.component, Call.RESERVE) not in state.pending:  # which a life that hangs does not answer
+    known = None if held.life else _loss_in(state, event)
+    # A life that hangs does not answer that it is reserved.
+    if known is not None and (event.component, Call.RESERVE) not in state.pending:
         return _lost_already(state, event.component)
     if _passes_over(held, event):
         return state, ()
     startable = event.startable and event.cause in PROCESS_ENDS
     if startable:  # the next life has not made the deployment begin anew
         state = replace(state, repeats={c: times for c, times in state.repeats.items() if c != event.component})
-    life, busy = event.life or held.life, event.cause is Cause.YIELD
-    loss = Loss(event.cause, event.detail, life, busy=busy, revival=Revival.where(startable))
+    if known is not None and startable:
+        loss = replace(known, revival=Revival.where(startable), again=True)
+    else:
+        life, busy = event.life or held.life, event.cause is Cause.YIELD
+        loss = Loss(event.cause, event.detail, life, busy=busy, revival=Revival.where(startable))
     if event.cause not in GOES_ON:
         return lose(state, event.component, loss)
     return _let_go(state, event.component, loss)
+
+
+def _loss_in(state: State, event: Failed) -> Loss | None:
+    """The last loss of a component, if that was the end, or the hanging, of the very life of an event."""
+    known = state.ended_lives.get(event.component)
+    return known if known is not None and known.life == event.life else None
 
 
 def _ended_since(state: State, event: Failed) -> State:
@@ -104,7 +114,7 @@ def lose(state: State, component: IRI, loss: Loss) -> Reaction:
         return_awaited_since=0,
     )
     if loss.cause in PROCESS_ENDS and loss.life:
-        without = replace(without, ended_lives={**state.ended_lives, component: loss.life})
+        without = replace(without, ended_lives={**state.ended_lives, component: loss})
     effects = (ReleaseFrom(component, epoch),)  # also what seems to be dead: it may hear, and not be heard
     if not is_needed(state, component):
         return then(effects, deploying.deploy(without.unchanged))

@@ -144,6 +144,8 @@ class Loss:
     answered: bool = field(default=True, kw_only=True)
     """Whether that is known from the component: else it could not be reached, and may well be able to act."""
     revival: Revival = field(default=Revival.NONE, kw_only=True)
+    again: bool = field(default=False, kw_only=True)
+    """Whether it is the loss of the same life once more, as its end was heard after the component was held anew."""
 
     @property
     def why(self) -> str:
@@ -202,8 +204,8 @@ class State:
     """The components that were released and have not obeyed yet, each with the epoch of the release."""
     watched: frozenset[IRI] = frozenset()
     lost: Mapping[IRI, Loss] = field(default_factory=dict)
-    ended_lives: Mapping[IRI, str] = field(default_factory=dict)
-    """The life of each component of which the end, or the hanging, was the last loss: the same may be heard again."""
+    ended_lives: Mapping[IRI, Loss] = field(default_factory=dict)
+    """The last loss of each component that was the end, or the hanging, of a life: the same may be heard again."""
     taken: Mapping[IRI, Holder] = field(default_factory=dict)
     """The components that tasks of the same or a higher priority hold, as of the last discovery.
 

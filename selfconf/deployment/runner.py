@@ -281,7 +281,7 @@ class TaskRunner:
         return islice(lost.items(), max(0, len(lost) - LOSSES_TOLD), None)
 
     def _notice(self, known: Mapping[IRI, Loss]) -> None:
-        """Record and report every component that the machine has just given up, whatever the cause.
+        """Record and report every component that the machine has just given up, whatever the cause; each loss once.
 
         Where only its life has ended since, its site is to count that as a crash if it is to start it again.
         """
@@ -289,8 +289,9 @@ class TaskRunner:
             before = known.get(component)
             if before is None or replace(before, revival=loss.revival) != loss:
                 self._components.abandon(component)
-                self._record.lost(component, loss.cause.value, loss.detail, self.clock())
-                self.reports.note(ComponentLost(component, loss.cause.value, loss.detail))
+                if not loss.again:
+                    self._record.lost(component, loss.cause.value, loss.detail, self.clock())
+                    self.reports.note(ComponentLost(component, loss.cause.value, loss.detail))
                 self._lasting_losses.lost()
             elif before is not loss and loss.life:
                 self._components.lives.lost(component, loss.life)

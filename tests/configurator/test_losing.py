@@ -332,8 +332,19 @@ def test_the_end_of_a_life_that_hangs_is_heeded_where_it_was_to_be_reserved_and_
     assert history.hear(ended) == [WakeUp(TRACKER, history.state.epoch)]
     history.state = replace(history.state, pending=frozenset({(TRACKER, Call.RESERVE)}))
     history.hear(ended)
-    assert history.state.lost[TRACKER].cause is Cause.CRASH
+    loss = history.state.lost[TRACKER]
+    assert (loss.cause, loss.life, loss.again, loss.startable) == (Cause.HUNG, "1", True, True)
     assert history.state.phase is Phase.COMPOSING
+
+
+def test_the_end_of_a_life_whose_site_is_gone_is_a_loss_of_its_own() -> None:
+    history = lost(Cause.HUNG)
+    history.composed(REFUSAL)
+    history.composed(navigation())
+    history.state = replace(history.state, pending=frozenset({(TRACKER, Call.RESERVE)}))
+    history.hear(Failed(TRACKER, "1", Cause.CRASH, "its life has ended"))
+    loss = history.state.lost[TRACKER]
+    assert (loss.cause, loss.again, loss.lasts) == (Cause.CRASH, False, False)
 
 
 @pytest.mark.parametrize("call", [Call.RESERVE, Call.APPLY])

@@ -9,13 +9,15 @@ import pytest
 
 from selfconf.bus.memory import MemoryBus
 from selfconf.bus.port import Replies
-from selfconf.configurator.events import Failed
+from selfconf.configurator.events import Call, Failed
 from selfconf.configurator.state import Loss, Phase, Policy
+from selfconf.deployment.components.calling import CALL
 from selfconf.deployment.runner import LOSSES_TOLD, RETURN
 from selfconf.model.refusal import TooFewEligible
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.messages import CallAnswer, Cause, Release, Status, TaskRecord, Verdict
 from selfconf.sdk.runtime.supervision import GRACE
+from tests.deployment.simulated import living_room
 from tests.deployment.tasks import TASK
 from tests.lab import ADVERTISEMENTS, Lab, Recorder, iri
 
@@ -274,3 +276,28 @@ def test_what_has_gone_without_a_word_is_waited_for_as_long_whatever_comes_meanw
     assert not agent.state.ended
     lab.component("drive")
     assert lab.running(agent)
+
+
+def test_a_life_that_hangs_and_ends_as_it_is_to_be_reserved_again_is_one_loss(tmp_path: Path) -> None:
+    """Its site thinks it alive at first, so it is reserved; nothing else can take its place."""
+    lab = Lab(tmp_path)
+    lab.site("astrid", *TASK)
+    for name in (*TASK, "tracker"):
+        lab.component(name)
+
+    def wake(_: object) -> None:
+        if not lab.node_of("tracker").open:
+            lab.component("tracker")
+
+    living_room(lab, "1", wake)
+    agent = lab.agent()
+    assert lab.running(agent)
+    hung = lab.runtimes["tracker"]
+    hung.calls.close()
+    hung.bus.serve(lab.keys.call(iri("person-tracker")), lambda _: None)
+    hung.hung("it hangs")
+    assert lab.until(lambda: (iri("person-tracker"), Call.RESERVE) in agent.state.pending, CALL)
+    lab.crash("tracker")
+    lab.let_pass(0.2)
+    assert [(one.component, one.cause) for one in lab.acts("lost")] == [(iri("person-tracker"), "hung")]
+    assert lab.until(lambda: agent.state.phase is Phase.RUNNING, CALL)
