@@ -1,9 +1,10 @@
-"""Families of stations, relays, sensors, dominoes and triples that have to cover what there is."""
+"""Families of stations, relays, sensors, and pieces of one role that have to cover what there is."""
 
 from __future__ import annotations
 
 import math
 import random
+from collections.abc import Sequence
 from itertools import combinations
 
 from benchmarks.search.families.wiring import counted, iri, made, profile
@@ -22,47 +23,75 @@ def cover(signals: int, stations: int, most: int, share: float, seed: int) -> Pr
 def tiling(side: int, holes: int, seed: int, fair: bool = True) -> Problem:
     """Dominoes that cover a board of which fields are missing, as many of both colours, or else of one alone.
 
-    A field is a free parameter: its value says in which direction the other half of its domino lies.
+    A field is a free parameter, of which each domino that could lie on it has a value of its own.
     """
     rng = random.Random(seed)
     board = [(row, column) for row in range(side) for column in range(side)]
     black, white = ([one for one in board if sum(one) % 2 == colour] for colour in (0, 1))
     missing = {*rng.sample(black, holes), *(rng.sample(white, holes) if fair else ())}
     place = {field: number for number, field in enumerate(one for one in board if one not in missing)}
-    some = []
-    for (row, column), number in place.items():
-        for direction, other in enumerate(((row, column + 1), (row + 1, column))):
-            if other in place:
-                masks = [ANY_VALUE] * len(place)
-                masks[number], masks[place[other]] = 1 << direction, 1 << direction + 2
-                some.append(Candidate(profile(f"domino{number:03}.{direction}"), tuple(masks)))
-    rng.shuffle(some)
-    return counted([some], [len(place) // 2], (), _variables("field", len(place), 4))
+    beside = [(number, ((row, column + 1), (row + 1, column))) for (row, column), number in place.items()]
+    dominoes = [(number, place[other]) for number, others in beside for other in others if other in place]
+    return _covering(len(place), dominoes, len(place) // 2, rng)
 
 
 def triples(points: int, number: int, seed: int) -> Problem:
     """So many triples of some points, of which no two have two points in common.
 
-    A pair of points is a free parameter: its value is the third point of its triple.
+    A pair of points is a free parameter, of which each triple with these points has a value of its own.
     """
-    rng = random.Random(seed)
-    name = rng.sample(range(points), points)
     pairs = {pair: k for k, pair in enumerate(combinations(range(points), 2))}
+    some = [[pairs[pair] for pair in combinations(triple, 2)] for triple in combinations(range(points), 3)]
+    return _covering(len(pairs), some, number, random.Random(seed))
+
+
+def trominoes(side: int, holes: int, seed: int) -> Problem:
+    """Straight and bent trominoes that cover a board of which some fields are missing."""
+    rng = random.Random(seed)
+    board = [(row, column) for row in range(side) for column in range(side)]
+    missing = set(rng.sample(board, holes))
+    place = {field: number for number, field in enumerate(one for one in board if one not in missing)}
+    pieces = []
+    for row, column in board:
+        square = [(row, column), (row, column + 1), (row + 1, column), (row + 1, column + 1)]
+        bent = [[field for field in square if field != corner] for corner in square]
+        pieces += [*bent, [(row, column + k) for k in range(3)], [(row + k, column) for k in range(3)]]
+    on_board = [[place[field] for field in piece] for piece in pieces if all(field in place for field in piece)]
+    return _covering(len(place), on_board, len(place) // 3, rng)
+
+
+def couples(people: int, acquaintances: int, seed: int) -> Problem:
+    """Pairs of people who know each other, of some each on average, in which all people take part."""
+    rng = random.Random(seed)
+    known: set[tuple[int, ...]] = set()
+    while len(known) < people * acquaintances // 2:
+        known.add(tuple(sorted(rng.sample(range(people), 2))))
+    return _covering(people, sorted(known), people // 2, rng)
+
+
+def trios(people: int, number: int, seed: int) -> Problem:
+    """Groups of three people, of some that are known to go together, in which all people take part once."""
+    rng = random.Random(seed)
+    order = rng.sample(range(people), people)
+    known = {tuple(sorted(order[k : k + 3])) for k in range(0, people, 3)}
+    while len(known) < number:
+        known.add(tuple(sorted(rng.sample(range(people), 3))))
+    return _covering(people, sorted(known), people // 3, rng)
+
+
+def _covering(places: int, pieces: Sequence[Sequence[int]], slots: int, rng: random.Random) -> Problem:
+    """So many of some pieces, no two of which have a place in common: each has a value of its own of each place."""
+    own = [0] * places
     some = []
-    for triple in combinations(range(points), 3):
-        masks = [ANY_VALUE] * len(pairs)
-        for third in triple:
-            a, b = (point for point in triple if point != third)
-            masks[pairs[a, b]] = 1 << third
-        some.append(Candidate(profile("triple" + ".".join(f"{name[point]:02}" for point in triple)), tuple(masks)))
+    for number, piece in enumerate(pieces):
+        masks = [ANY_VALUE] * places
+        for place in piece:
+            masks[place] = 1 << own[place]
+            own[place] += 1
+        some.append(Candidate(profile(f"piece{number:04}"), tuple(masks)))
     rng.shuffle(some)
-    return counted([some], [number], (), _variables("pair", len(pairs), points))
-
-
-def _variables(name: str, number: int, values: int) -> tuple[Variable, ...]:
-    return tuple(
-        Variable(iri(f"{name}{k}"), tuple(iri(f"{name}{k}.{value}") for value in range(values))) for k in range(number)
-    )
+    values = tuple(tuple(iri(f"place{k}.{value}") for value in range(max(own))) for k in range(places))
+    return counted([some], [slots], (), tuple(Variable(iri(f"place{k}"), values[k]) for k in range(places)))
 
 
 def relay_chain(hops: int, relays: int, reach: float, seed: int) -> Problem:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from benchmarks.search.families.arithmetic import circuit, factors, parity, sums
-from benchmarks.search.families.coverage import cover, fields, relay_chain
+from benchmarks.search.families.coverage import couples, cover, fields, relay_chain, tiling, trios, triples, trominoes
 from benchmarks.search.families.graphs import coloured_parameters, colouring, cycles, frequencies, tour, tree
 from benchmarks.search.families.installations import (
     beds,
@@ -314,6 +314,30 @@ SETS: Mapping[str, Mapping[str, Family]] = {
             ("30 legs", lambda seed: patrol(30, 8, seed)),
         ),
     },
+    "choosing packings": {
+        "tiling": (
+            ("8 x 8, 2 of one colour missing", lambda seed: tiling(8, 2, seed, fair=False)),
+            ("16 x 16, 3 of both missing", lambda seed: tiling(16, 3, seed)),
+        ),
+        "triples": (
+            ("9 of 8 points", lambda seed: triples(8, 9, seed)),
+            ("26 of 13 points", lambda seed: triples(13, 26, seed)),
+        ),
+        "couples": (
+            ("30 people", lambda seed: couples(30, 4, seed)),
+            ("100 people", lambda seed: couples(100, 5, seed)),
+        ),
+    },
+    "reporting packings": {
+        "trominoes": (
+            ("6 x 6", lambda seed: trominoes(6, 0, seed)),
+            ("10 x 10, one missing", lambda seed: trominoes(10, 1, seed)),
+        ),
+        "trios": (
+            ("24 people, 60 trios", lambda seed: trios(24, 60, seed)),
+            ("48 people, 150 trios", lambda seed: trios(48, 150, seed)),
+        ),
+    },
 }
 """The families by what they are for."""
 
@@ -333,6 +357,11 @@ SMALLEST: Mapping[str, Family] = {
     "knights": (("4 on 3 x 3", lambda seed: knights(3, 4, seed)),),
     "teams": (("2 of 2", lambda seed: teams(2, 2, 8, 5, 3, seed)),),
     "circuit": (("10 gates", lambda seed: circuit(4, 10, 2, seed)),),
+    "tiling": (("3 x 3, one missing", lambda seed: tiling(3, 1, seed, fair=False)),),
+    "triples": (("2 of 5 points", lambda seed: triples(5, 2, seed)),),
+    "couples": (("6 people", lambda seed: couples(6, 3, seed)),),
+    "trominoes": (("3 x 3", lambda seed: trominoes(3, 0, seed)),),
+    "trios": (("6 people, 6 trios", lambda seed: trios(6, 6, seed)),),
     "quorum": (("5 roles", lambda seed: quorum(5, 3, 4, 3, seed)),),
     "fields": (("2 and 2 of 6", lambda seed: fields(5, 6, 2, 2, seed)),),
     "packing": (("3 pieces on 4 x 4", lambda seed: packing(4, 3, seed)),),

@@ -68,7 +68,8 @@ def _groups_of_values(reduced: ReducedProblem) -> dict[int, list[int]]:
     """Return by variable the options that constrain it, where no value of it suits two that could play at once.
 
     As each option has some value, that one of them plays at most is all that the variable says; where they are of one
-    role with one slot that is nothing, and no options are returned.
+    role with one slot that is nothing, and no options are returned. One option alone that a role of several slots has
+    is a group for counting: it takes what nothing else does.
     """
     if not _often_apart(reduced):
         return {}
@@ -77,10 +78,11 @@ def _groups_of_values(reduced: ReducedProblem) -> dict[int, list[int]]:
     for variable, some in enumerate(reduced.constraining()):
         admitted: dict[tuple[int, int], int] = {}
         for role, number, mask in some:
-            player = role, number if asked[role] > 1 else 0
+            player = role, number + 1 if asked[role] > 1 else 0
             admitted[player] = admitted.get(player, 0) | mask
         if _disjoint(admitted.values()) and all(mask > 0 for _, _, mask in some):
-            found[variable] = [number for _, number, _ in some] if len(admitted) > 1 else []
+            says = len(admitted) > 1 or any(number for _, number in admitted)
+            found[variable] = [number for _, number, _ in some] if says else []
     return found
 
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from benchmarks.search.families.coverage import tiling, triples
+from benchmarks.search.families.coverage import couples, tiling, triples
 from benchmarks.search.families.graphs import frequencies, tour
 from benchmarks.search.families.puzzles import latin, pigeonholes, queens
+from selfconf.model.partition import ANY_VALUE
 from selfconf.search.budget import Budget
 from selfconf.search.engines.exclusion import exclusive_groups
 from selfconf.search.engines.group_counting import GroupCounting
@@ -47,6 +48,13 @@ def test_what_covers_all_that_there_is_plays_an_option_of_each_group() -> None:
         assert len(exclusive_groups(pruned(reduced(problem))).played) >= groups
         assert isinstance(solution(LazyReduction(problem), Budget(20_000)), list)
     assert exclusive_groups(pruned(reduced(triples(9, 13, 1)))).crowded == {0}
+
+
+def test_what_only_one_option_takes_is_a_group_as_well() -> None:
+    problem = couples(60, 4, 5)
+    known = {place for pair in problem.candidates[0] for place, mask in enumerate(pair.admits) if mask != ANY_VALUE}
+    assert len(known) < 60  # one person knows nobody
+    assert exclusive_groups(pruned(reduced(problem))).crowded == {0}
 
 
 def test_counting_does_not_begin_from_a_group_that_was_put_together_before(monkeypatch: pytest.MonkeyPatch) -> None:
