@@ -18,22 +18,23 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict
 from importlib.metadata import version
+from multiprocessing.connection import Connection, wait
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from selfconf.atomic_write import write_atomically
 from selfconf.model.diagnostic import Diagnostic, Severity
 from selfconf.rdf.validation import CheckEach, FileChecker, UnclearedFile
 
 if TYPE_CHECKING:
-    from multiprocessing.pool import Pool
+    from multiprocessing.process import BaseProcess
+    from multiprocessing.sharedctypes import Synchronized
 
 WORTH = 16
 """Full checks that take about as long as starting a process."""
 ENDING_THREAD = 0.1
 """Seconds that the system may take to end a thread whose work is over."""
 PROGRAMS = ("pyshacl", "rdflib", "pyoxigraph")
-_checker: FileChecker | None = None
 
 
 def shared(
@@ -45,30 +46,77 @@ def shared(
 
     They are forked inside of a `forking()`, which a program with a thread of its own can have rest meanwhile.
     """
-    processes = min(os.cpu_count() or 1, len(uncleared) // WORTH)
-    if processes < 2:
+    count = min(os.cpu_count() or 1, len(uncleared) // WORTH)
+    if count < 2:
         yield from map(checker, uncleared)
         return
     yield checker(uncleared[0])  # loads what each process will need
-    with forking():
-        pool = _pool(processes, checker) if _has_one_thread() else None
-    if pool is None:
-        yield from map(checker, uncleared[1:])
-        return
-    with pool:
-        yield from pool.imap(_checked, uncleared[1:], chunksize=4)
-        # They end by themselves: a program may have a handler of SIGTERM, which they have, too, until they begin.
-        pool.close()
-        pool.join()
+    processes: list[BaseProcess] = []
+    try:
+        with forking():
+            readers = _fork(count, processes, checker, uncleared[1:]) if _has_one_thread() else []
+        yield from _in_order(readers, checker, uncleared[1:])
+    finally:
+        for process in processes:
+            process.kill()  # it has nothing to put in order, and may have a handler of gentler signals
+        for process in processes:
+            process.join()
 
 
-def _pool(processes: int, checker: FileChecker) -> Pool:
-    """Processes that check files. Ctrl-C does not reach them: it is for this program, which ends them."""
+def _fork(
+    count: int, processes: list[BaseProcess], checker: FileChecker, uncleared: Sequence[UnclearedFile]
+) -> list[Connection]:
+    """Begin processes that check files, and add them to `processes`; what they find is to be read from what it gives.
+
+    Ctrl-C does not reach them: it is for this program, which ends them.
+    """
+    forked = multiprocessing.get_context("fork")
+    following, readers = forked.Value("L", 0), []
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
-        return multiprocessing.get_context("fork").Pool(processes, _begin, (checker,))
+        for _ in range(count):
+            reader, writer = forked.Pipe(duplex=False)
+            processes.append(forked.Process(target=_check, args=(checker, uncleared, following, writer), daemon=True))
+            processes[-1].start()
+            writer.close()
+            readers.append(reader)
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    return readers
+
+
+def _check(
+    checker: FileChecker, uncleared: Sequence[UnclearedFile], following: Synchronized[int], writer: Connection
+) -> None:
+    """Check the files that no other process has taken, one after the other, and send the place and outcome of each.
+
+    It ends without a word at a file that cannot be checked, as this is then tried, and told, where all are read.
+    """
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    with contextlib.suppress(Exception):
+        while True:
+            with following.get_lock():
+                place, following.value = following.value, following.value + 1
+            if place >= len(uncleared):
+                return
+            writer.send((place, checker(uncleared[place])))
+
+
+def _in_order(
+    readers: list[Connection], checker: FileChecker, uncleared: Sequence[UnclearedFile]
+) -> Iterator[list[Diagnostic]]:
+    """What processes have found in each file; what they leave, as one that the system has ended, is checked here."""
+    found: dict[int, list[Diagnostic]] = {}
+    for place, one in enumerate(uncleared):
+        while place not in found and readers:
+            for reader in wait(readers):
+                try:
+                    at, problems = cast("Connection", reader).recv()
+                except (EOFError, OSError):
+                    readers.remove(cast("Connection", reader))
+                else:
+                    found[at] = problems
+        yield found.pop(place) if place in found else checker(one)
 
 
 def _has_one_thread() -> bool:
@@ -85,17 +133,6 @@ def _threads() -> int:
         return len(list(Path("/proc/self/task").iterdir()))
     except OSError:
         return threading.active_count()
-
-
-def _begin(checker: FileChecker) -> None:
-    global _checker
-    _checker = checker
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
-
-
-def _checked(uncleared: UnclearedFile) -> list[Diagnostic]:
-    assert _checker is not None
-    return _checker(uncleared)
 
 
 class Remembered:

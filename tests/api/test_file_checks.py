@@ -121,6 +121,36 @@ def test_the_processes_say_nothing_when_all_are_interrupted() -> None:
     assert (ended.stdout, ended.stderr) == ("interrupted\n", "")
 
 
+LEFT = """
+import os, signal
+from selfconf.api import file_checks
+
+here = os.getpid()
+
+def check(suspect):
+    if suspect == 7 and os.getpid() != here:
+        os.kill(os.getpid(), signal.SIGKILL)
+    if suspect == 9:
+        raise ValueError("nine" if os.getpid() == here else "where another process is")
+    return suspect
+
+file_checks.WORTH = 1
+os.cpu_count = lambda: 3
+try:
+    for found in file_checks.shared(check, list(range(12))):
+        print(found, end=" ")
+except ValueError as error:
+    print(error)
+"""
+"""One process is killed at 7; 9 cannot be checked at all."""
+
+
+@pytest.mark.slow
+def test_what_a_process_leaves_is_checked_by_the_program_and_a_failure_is_told_by_it() -> None:
+    ended = subprocess.run([sys.executable, "-c", LEFT], capture_output=True, text=True, timeout=60, check=True)
+    assert (ended.stdout, ended.stderr) == ("0 1 2 3 4 5 6 7 8 nine\n", "")
+
+
 @pytest.mark.slow
 def test_memory_gives_the_same_verdicts_and_looks_at_nothing_twice(files: Path, tmp_path: Path) -> None:
     plain, counting = check([str(files)]), Counting()
