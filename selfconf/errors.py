@@ -113,6 +113,10 @@ class NetworkError(SelfconfError):
     """The ecology cannot be reached: no site answers, an endpoint is taken, the session was lost."""
 
 
+class SessionClosedError(NetworkError):
+    """Code of this process has closed the session by which it takes part in the ecology; only a new process can."""
+
+
 class SiteMisusedError(AuthorError):
     """A site that another program has started has ended at once, and has said why on stderr already."""
 

@@ -143,7 +143,7 @@ class Bridge:
                 host.run(lambda: self._ended)
             except NetworkError as error:
                 self.complain(str(error))
-                host.superseded = None
+                host.trouble = None
                 left = [runtime.component for runtime in host.runtimes if runtime.closed]
                 for component in [one for one, code in self._living.items() if code in left]:
                     host.remove(self._living.pop(component))

@@ -126,6 +126,13 @@ class Bus(Protocol):
         """
         ...
 
+    def when_lost(self, lost: Callable[[], None]) -> None:
+        """Call `lost` if other code of this process closes the session of this node, which has left for good then.
+
+        Every life has ended for it, what is put goes nowhere, and it can declare and ask nothing.
+        """
+        ...
+
     def now(self) -> float:
         """Seconds of a clock that never goes back."""
         ...

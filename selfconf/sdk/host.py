@@ -15,7 +15,7 @@ from typing import TypeVar
 
 from selfconf import files, library, rendezvous
 from selfconf.bus.port import Bus, Replies
-from selfconf.errors import AuthorError, NetworkError, PeerError, ProgrammerError
+from selfconf.errors import AuthorError, NetworkError, PeerError, ProgrammerError, SessionClosedError
 from selfconf.model.immutable import FIRST_VALUES
 from selfconf.model.profile import Profile
 from selfconf.model.signal_fields import SignalFields
@@ -66,8 +66,8 @@ class Host:
         self.runtimes: list[ComponentRuntime] = []
         self._leaving: set[ComponentRuntime] = set()
         """Those that leave the ecology, and whose code has not come to rest yet."""
-        self.superseded: str | None = None
-        """Why a component had to leave, where another process is the same one."""
+        self.trouble: NetworkError | None = None
+        """Why a component had to leave: another process is the same one, or code has closed the session."""
         self.code = CodeThread(inline=not bus.run_aside())
         self._hung, self._ontologies = hung, tuple(ontologies)
         self._overdue: RunningCode | None = None
@@ -76,6 +76,7 @@ class Host:
         """When the code was looked at last, and when this process has gone on last that had stood still."""
         self._used = time.process_time()
         """How many seconds of a processor this process had used by the last look."""
+        bus.when_lost(self._be_lost)
         if not self.code.inline:
             bus.wake_up(self._watch_code)
             bus.later(AT_REST, self._settle)
@@ -131,14 +132,15 @@ class Host:
     def run(self, until: Callable[[], bool]) -> None:
         """Let the components hear everything, until `until` holds; `code.wake_up` has it asked at once.
 
-        Raises NetworkError if another process is the same component, and this one has to leave.
+        Raises NetworkError if another process is the same component, and this one has to leave, and SessionClosedError
+        if code of this process has closed the session.
         """
         if self.code.inline:
             self.bus.run(until)
         else:
-            self.code.run(lambda: until() or self.superseded is not None)
-        if self.superseded is not None:
-            raise NetworkError(self.superseded)
+            self.code.run(lambda: until() or self.trouble is not None)
+        if self.trouble is not None:
+            raise self.trouble
 
     def leave(self) -> None:
         """Let every component leave the ecology at once, whatever its code does: the process is about to end.
@@ -213,7 +215,18 @@ class Host:
         raise NetworkError(f"{component} is alive already: {where}; end that one first")
 
     def _be_superseded(self, reason: str) -> None:
-        self.superseded = reason
+        self._have_to_leave(NetworkError(reason))
+
+    def _be_lost(self) -> None:
+        """Let every component leave: none hears of a configurator any more, nor is heard of."""
+        self.leave()
+        names = ", ".join(runtime.profile.component for runtime in self.runtimes) or "this program"
+        self._have_to_leave(
+            SessionClosedError(f"code of {names} has closed the session by which it was in the ecology")
+        )
+
+    def _have_to_leave(self, why: NetworkError) -> None:
+        self.trouble = why
         self.code.wake_up()
 
     def _settle(self) -> None:

@@ -15,7 +15,7 @@ from typing import NoReturn
 
 from selfconf import rendezvous
 from selfconf.aside_writer import AsideHandler, AsideWriter, write_line
-from selfconf.errors import ProgrammerError, SelfconfError
+from selfconf.errors import ProgrammerError, SelfconfError, SessionClosedError
 from selfconf.model.setting_names import options_named
 from selfconf.model.wording import plain
 from selfconf.sdk.component import Component
@@ -29,12 +29,14 @@ TIME_TO_END = 2.5
 THREADS_GO_ON = 0.5
 """Seconds that threads which code of the components has started may go on after the main thread has ended."""
 HUNG_EXIT_CODE = 70
-"""The exit code of a program that was ended because its code hung: EX_SOFTWARE of sysexits.h."""
+"""The exit code of a program that ends as its code hangs, or has closed its session: EX_SOFTWARE of sysexits.h."""
 
 
 @options_named()
 def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> NoReturn:
     """Run components as one program until SIGINT, SIGTERM or SIGHUP; then exit, with 2 if it cannot run.
+
+    It exits with 70 if its code hangs, or closes its session.
 
     Threads that the components have started are not waited for.
 
@@ -58,7 +60,7 @@ def main(*kinds: type[Component], arguments: Sequence[str] | None = None) -> NoR
         run_until_ended(host)
     except SelfconfError as error:
         print(plain(str(error)), file=sys.stderr)
-        raise SystemExit(2) from None
+        raise SystemExit(_exit_code(error)) from None
     raise SystemExit(0)
 
 
@@ -114,7 +116,8 @@ def open_host(
 def run_until_ended(host: Host) -> None:
     """Run a host until SIGINT, SIGTERM or SIGHUP, or until the site that started this program is gone; then close it.
 
-    Raises NetworkError if another process is the same component, and this one has to leave.
+    Raises NetworkError if another process is the same component, and this one has to leave, and SessionClosedError if
+    code of this process has closed the session.
     """
 
     def then() -> None:
@@ -136,6 +139,8 @@ def _exit_code(error: BaseException | None) -> int:
         return error.code if isinstance(error.code, int) else int(error.code is not None)
     if error is None:
         return 0
+    if isinstance(error, SessionClosedError):
+        return HUNG_EXIT_CODE
     return 2 if isinstance(error, SelfconfError) else 1
 
 

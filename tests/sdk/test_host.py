@@ -11,7 +11,7 @@ import pytest
 
 from selfconf.bus.memory import Network
 from selfconf.bus.zenoh import ZenohBus
-from selfconf.errors import AuthorError, NetworkError, ProgrammerError, TurtleError
+from selfconf.errors import AuthorError, NetworkError, ProgrammerError, SessionClosedError, TurtleError
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Reserve
 from selfconf.sdk import Component, Host
@@ -181,7 +181,7 @@ def test_a_host_of_which_a_component_is_superseded_ends_with_an_error(living: Li
         thread.join(PATIENCE)
     with pytest.raises(NetworkError, match="urn:c:lamp is alive already, in the life a; this process leaves"):
         hosts[1].run(lambda: False)
-    assert hosts[0].superseded is None
+    assert hosts[0].trouble is None
     for host in hosts:
         host.close()
 
@@ -277,23 +277,28 @@ def test_a_component_that_is_removed_leaves_and_may_come_again(tmp_path: Path) -
     host.close()
 
 
-def test_an_actuator_whose_session_other_code_has_closed_comes_to_rest(living: LivingStage) -> None:
+def test_an_actuator_whose_session_its_code_has_closed_comes_to_rest_and_its_host_has_to_end(
+    living: LivingStage,
+) -> None:
     class Lamp(Component):
         def __init__(self) -> None:
             self.said: list[str] = []
 
         def started(self) -> None:
             self.said.append("started")
+            assert self._runtime is not None
+            assert isinstance(self._runtime.bus, ZenohBus)
+            self._runtime.bus._session.close()
 
         def stopped(self) -> None:
             self.said.append("stopped")
 
-    lamp = living.component(living.advertised(Lamp, ":lamp a sc:Component, :Lamp .")())
+    host = living.host()
+    lamp = host.add(living.advertised(Lamp, ":lamp a sc:Component, :Lamp .")())
     held = living.call("urn:c:lamp", "reserve", Reserve(1, living.supervisor, "task~1"))
     assert until(lambda: held)
     living.apply("urn:c:lamp")
-    assert until(lambda: lamp.said == ["started"])
-    assert lamp._runtime is not None
-    assert isinstance(lamp._runtime.bus, ZenohBus)
-    lamp._runtime.bus._session.close()
-    assert until(lambda: lamp.said == ["started", "stopped"])
+    with pytest.raises(SessionClosedError, match="code of urn:c:lamp has closed the session"):
+        host.run(lambda: False)
+    host.close()
+    assert lamp.said == ["started", "stopped"]

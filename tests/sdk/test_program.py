@@ -127,6 +127,8 @@ class Lamp(Component):
             print("hanging", flush=True)
             while True:
                 time.sleep(0.01)  # code that never returns
+        if "close" in sys.argv:
+            self._runtime.bus._session.close()
         if "busy" in sys.argv:
             time.sleep(0.2)  # code that takes long
 
@@ -267,6 +269,17 @@ def test_a_program_that_a_site_has_started_ends_when_its_code_hangs_so_that_it_c
     assert process.wait(PATIENCE) == HUNG_EXIT_CODE
     assert until(lambda: programs.stage.fails)
     assert programs.stage.fails[0][1].detail == "`every` has not returned within 0.3 s"
+
+
+@pytest.mark.process
+def test_a_program_whose_code_closes_its_session_comes_to_rest_and_ends_so_that_it_can_be_started_again(
+    programs: Programs,
+) -> None:
+    process = programs.acting("close", **parent_environment())
+    said, complained = process.communicate(timeout=PATIENCE)
+    assert process.returncode == HUNG_EXIT_CODE
+    assert said == "at rest\n"
+    assert complained == "code of urn:c:lamp has closed the session by which it was in the ecology\n"
 
 
 @pytest.mark.process

@@ -73,6 +73,9 @@ class MemoryBus:
         self.busy_until = max(self.network.time, self.busy_until) + seconds
         self.network.at_time(self.busy_until, self.catch_up)
 
+    def when_lost(self, lost: Callable[[], None]) -> None:
+        """Do nothing: no other code has the session of this node."""
+
     def now(self) -> float:
         """Seconds of simulated time, by the clock of this node."""
         return max(self.network.time, self.busy_until) + self.clock

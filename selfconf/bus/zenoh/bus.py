@@ -86,11 +86,11 @@ class _Publisher:
         self.undeclare = bus._keep(declared)
 
     def put(self, payload: bytes, attachment: bytes = b"") -> None:
-        """Put a sample; with the link down it is lost without an error, as Zenoh has it."""
+        """Put a sample; with the link down, or the session closed, it is lost without an error, as Zenoh has it."""
         try:
             self._declared.put(payload, attachment=attachment or None)
         except zenoh.ZError:
-            if self._bus._open:
+            if self._bus._open and not self._bus._session.is_closed():
                 raise
 
 
@@ -116,6 +116,8 @@ class ZenohBus(Loop):
         self._turns = 0
         """How often this bus has gained or lost a hub: one that comes back has the same name as before."""
         self._link_watchers: list[Callable[[], None]] = []
+        self._lost: list[Callable[[], None]] = []
+        """What is called when other code has closed the session."""
         self._unread_links = UnreadLinks(self, session.info.links)
         self._listen_to_links()
         _OPEN.add(self)
@@ -130,7 +132,7 @@ class ZenohBus(Loop):
 
         def listen() -> None:
             try:
-                heard = callback(self._turned)
+                heard = callback(self._turned, self._closed)
                 declared.put(self._session.info.declare_transport_events_listener(heard, history=True))
             except zenoh.ZError as error:  # it is raised again, in the thread that waits
                 declared.put(error)
@@ -184,6 +186,19 @@ class ZenohBus(Loop):
             self._unread_links.watch()
         for tell in tuple(self._link_watchers):
             tell()
+
+    def when_lost(self, lost: Callable[[], None]) -> None:
+        """Call `lost` if other code of this process closes the session."""
+        self._lost.append(lost)
+
+    def _closed(self) -> None:
+        """The session was closed; called by Zenoh, on the thread of the code that has done so."""
+        if self._open:
+            self._hubs.clear()
+            for tell in self._link_watchers:
+                tell()
+            for lost in self._lost:
+                self.wake_up(lost)
 
     def publisher(
         self, key: str, urgency: Urgency, matched: Callable[[bool], None] | None = None, *, kept: int = 0

@@ -399,11 +399,9 @@ class ComponentRuntime:
         """Hold the component for some tasks no more, and tell those that still count on it."""
         names = ", ".join(map(task_name, tasks))
         log.warning("%s: letting go of %s: %s", self.profile.component.short, names, why)
-        try:
-            for task in tasks:
-                self._put_fail(Cause.LET_GO, why, task)
-        finally:  # the component comes to rest even where that cannot be said, as its session was closed
-            self._drop(tasks)
+        for task in tasks:
+            self._put_fail(Cause.LET_GO, why, task)
+        self._drop(tasks)
         self._when_at_rest(self._waiting.offer)
 
     def _outlived(self, life: str) -> None:

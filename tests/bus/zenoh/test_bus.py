@@ -59,7 +59,11 @@ def test_lives_end_for_a_bus_whose_session_other_code_has_closed(zenoh_router: Z
     undo = here.watch(f"{top}/live/*", lambda key, alive: undone.append((key, alive)), many=many)
     assert until(lambda: lives == undone == [(f"{top}/live/1", True)], here)
     undo()
+    lost: list[str] = []
+    here.when_lost(lambda: lost.append(here.link))
     here._session.close()
+    assert until(lambda: bool(lost), here)
+    assert lost == [""]
     assert until(lambda: lives[1:] == [(f"{top}/live/1", False)], here)
     assert len(undone) == 1
     here.close()
