@@ -141,12 +141,20 @@ def read_payload(payload: bytes, raw: bool, encoding: SignalEncoding) -> Any:
 def _read_json(payload: bytes) -> Any:
     """The value that JSON says. Raises ValueError, and RecursionError where it is nested too deeply."""
     zeros = payload.translate(_DIGITS)
-    if _LONGEST not in zeros or (_LONG not in zeros and _LONG_NEGATIVE not in zeros):
+    if _LONGEST not in zeros or not _has_long_whole_number(zeros):
         try:
             return orjson.loads(payload)
         except orjson.JSONDecodeError:
             pass  # what the standard library takes for JSON, such as NaN, goes on being read, and it says what is wrong
     return json.loads(payload)
+
+
+def _has_long_whole_number(zeros: bytes) -> bool:
+    """Whether JSON, with every digit a zero, may have a whole number beyond 64 bits.
+
+    A double may have as many digits, seventeen and three zeros before them, but only after its point.
+    """
+    return _LONG_NEGATIVE in zeros or (_LONG in zeros and _LONG in zeros.replace(b".0", b"."))
 
 
 def _datatype(view: memoryview) -> str:

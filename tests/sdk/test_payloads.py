@@ -61,6 +61,15 @@ def test_a_number_arrives_as_it_was_however_long(number: float) -> None:
     assert type(arrived["numbers"][1]) is type(number)
 
 
+def test_only_a_long_whole_number_is_read_by_the_standard_library(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(json, "loads", lambda _: "the standard library")
+    doubles = [0.00012345678901234567, -0.00099999999999999992, 1234567890123456.7, 1.7976931348623157e308]
+    for number in (*doubles, 2**63, -(2**59), 1764560000000000000):
+        assert read_payload(as_json([number, number]), False, SignalEncoding()) == [number, number]
+    for number in (2**64, -(2**63)):
+        assert read_payload(as_json([0.5, number]), False, SignalEncoding()) == "the standard library"
+
+
 @pytest.mark.parametrize("value", [{1: "a"}, {"x": OrderedDict(a=None)}, (1, [2]), IRI("urn:x"), {True: 1}])
 def test_what_looks_like_json_to_python_is_json(value: Any) -> None:
     assert as_json(value) == json.dumps(value, separators=(",", ":")).encode()
