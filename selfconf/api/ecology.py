@@ -18,12 +18,12 @@ from selfconf.model.immutable import FrozenMapping, immutable, replace
 from selfconf.model.left_out import LeftOut
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI, BlankNode, Literal, Term
-from selfconf.model.wording import plain
+from selfconf.model.wording import counted, plain
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import AdvertisementIndex, Partitioner
 from selfconf.rdf.sparql import Dataset
 from selfconf.rdf.vocabulary import RDF, SC
-from selfconf.render import count, html_table, short
+from selfconf.render import html_table, short
 
 if TYPE_CHECKING:
     from selfconf.query import Question, Shown
@@ -97,7 +97,7 @@ class Solutions(Tabular, Sequence[Mapping[str, Term]]):
         return ([short(row[name]) if name in row else "" for name in self.variables] for row in self._rows)
 
     def __repr__(self) -> str:
-        return Tabular.__repr__(self) if self.variables else count(len(self), "solution")
+        return Tabular.__repr__(self) if self.variables else counted(len(self), "solution")
 
 
 class Ecology(ABC):
@@ -202,7 +202,7 @@ class Ecology(ABC):
         return True
 
     def __repr__(self) -> str:
-        return f"<ecology of {count(len(self), 'component')}>"
+        return f"<ecology of {counted(len(self), 'component')}>"
 
     def _repr_html_(self) -> str:
         return self.components._repr_html_()
@@ -231,7 +231,7 @@ class LoadedEcology(Ecology):
 
     def __repr__(self) -> str:
         origin = f" from {', '.join(self.names)}" if self.names else ""
-        return plain(f"<ecology of {count(len(self), 'component')}{origin}>")
+        return plain(f"<ecology of {counted(len(self), 'component')}{origin}>")
 
 
 @immutable

@@ -13,6 +13,7 @@ from selfconf.api.tables import Tabular
 from selfconf.errors import AuthorError
 from selfconf.model.diagnostic import UNREADABLE, Diagnostic, Report, Severity, report
 from selfconf.model.immutable import immutable
+from selfconf.model.wording import counted
 from selfconf.project import PROJECT_FILE, project_problems
 from selfconf.rdf import validation
 from selfconf.rdf.validation import CheckEach, SourceText
@@ -56,10 +57,8 @@ class ValidationReport(Tabular, Report, Sequence[Diagnostic]):
             yield [found.file, str(found.line), found.severity.value, found.code, found.message]
 
     def __repr__(self) -> str:
-        from selfconf.render import count  # loads what refusals say, which the command line does not need here
-
-        counted = f"{count(self.errors, 'error')} and {count(self.warnings, 'warning')}"
-        said = f"<{counted} in {count(len(self.files), 'file')}>"
+        problems = f"{counted(self.errors, 'error')} and {counted(self.warnings, 'warning')}"
+        said = f"<{problems} in {counted(len(self.files), 'file')}>"
         return f"{said}\n{Tabular.__repr__(self)}" if self.diagnostics else said
 
     def _repr_html_(self) -> str:

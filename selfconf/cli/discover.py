@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from selfconf.cli.options import add_ecology_arguments, complain_of, joined
 from selfconf.cli.terminal import display, display_json, styled_state
+from selfconf.model.wording import counted
 
 if TYPE_CHECKING:
     from selfconf.api.living.component_states import ComponentState
@@ -24,8 +25,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(given: argparse.Namespace) -> int:
     """0 once the ecology has answered."""
-    from selfconf.render import count
-
     with joined(given) as ecology:
         states = ecology.component_states()
         disobedient: Mapping[IRI, str] = {}
@@ -40,7 +39,7 @@ def run(given: argparse.Namespace) -> int:
     display(_table(states))
     for line in _sentences(states, disobedient):
         display(line)
-    display(f"{count(len(states), 'component')} at {count(len(discovery.sites), 'site')} of ecology {ecology.name}")
+    display(f"{counted(len(states), 'component')} at {counted(len(discovery.sites), 'site')} of ecology {ecology.name}")
     return 0
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from selfconf.cli.options import add_format_argument, domain
 from selfconf.cli.terminal import complain, display, display_json
 from selfconf.errors import AuthorError
-from selfconf.model.wording import listed
+from selfconf.model.wording import counted, listed
 
 if TYPE_CHECKING:
     from selfconf.importing import ImportedFile, ImportReport
@@ -105,13 +105,13 @@ def _looked_for(given: argparse.Namespace) -> str:
 
 
 def _print_table(report: ImportReport) -> None:
-    from selfconf.render import count, table
+    from selfconf.render import table
 
     rows = [[str(file.path), file.state.value, str(len(_components(file)))] for file in report.files]
     if rows:
         display(table(["file", "is", "components"], rows))
     components = sum(len(_components(file)) for file in report.files)
-    display(f"{count(components, 'component')} in {count(len(rows), 'file')}")
+    display(f"{counted(components, 'component')} in {counted(len(rows), 'file')}")
 
 
 def _components(file: ImportedFile) -> list[dict[str, Any]]:

@@ -10,7 +10,7 @@ from selfconf.cli.options import add_format_argument, add_keys_argument, number_
 from selfconf.cli.parsing import add_parser
 from selfconf.cli.terminal import display, display_json
 from selfconf.errors import AuthorError
-from selfconf.model.wording import utc_text
+from selfconf.model.wording import counted, utc_text
 
 if TYPE_CHECKING:
     from selfconf.access import Authority, Certificate, KeysFolder
@@ -111,7 +111,7 @@ def _revoke(given: argparse.Namespace) -> int:
 
     authority, principal = _authority(given), Principal.written(given.holder)
     number = authority.revoke(principal)
-    display(f"revoked {number} certificate{'s' * (number != 1)} of {principal}")
+    display(f"revoked {counted(number, 'certificate')} of {principal}")
     if authority.aware():
         display("the folders of keys that were issued on this machine, and are where they were, know it")
     display(f"copy {authority.path / 'revoked.pem'} into the folder of keys of every site on another machine")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from selfconf.cli.options import add_ecology_arguments, complain_of, joined, seconds_option
 from selfconf.cli.terminal import Terminal, complain, display, display_json, styled_state
 from selfconf.errors import NetworkError
+from selfconf.model.wording import counted
 
 if TYPE_CHECKING:
     from selfconf.api.living.component_states import ComponentState
@@ -80,7 +81,7 @@ def _rates(
 
 def _table(ecology: LivingEcology, now: tuple[ComponentState, ...], rates: dict[str, dict[str, float]]) -> str:
     from selfconf.rdf.sparql import QUERY_PREFIXES
-    from selfconf.render import count, duration, ecology_names, table
+    from selfconf.render import duration, ecology_names, table
 
     names, note = ecology_names(QUERY_PREFIXES, [one.component for one in now])
     rows = []
@@ -91,5 +92,5 @@ def _table(ecology: LivingEcology, now: tuple[ComponentState, ...], rates: dict[
         rows.append([names(one.component), state, one.task, issued, memory, age, one.place, one.site])
     living, held = sum(one.state == "alive" for one in now), sum(bool(one.task) for one in now)
     head = ["component", "state", "held by", "issues", "memory", "age", "process", "site"]
-    said = f"ecology {ecology.name}: {living} of {count(len(now), 'component')} live, {held} held by tasks"
+    said = f"ecology {ecology.name}: {living} of {counted(len(now), 'component')} live, {held} held by tasks"
     return "\n".join(filter(None, (said, "", table(head, rows, styled_state), note and f"\n{note}")))

@@ -21,7 +21,7 @@ from selfconf.model.relaxation import Relaxation
 from selfconf.model.requirement import InputFed, OneRoleEach, OneValue, Requirement, RolePlayed
 from selfconf.model.setting_names import setting
 from selfconf.model.term import IRI
-from selfconf.model.wording import listed
+from selfconf.model.wording import counted, listed
 
 
 @immutable
@@ -335,9 +335,8 @@ class Undecided:
     def __str__(self) -> str:
         if self.seconds is not None:
             return f"not decided within {self.seconds:g} s; allow more by {setting('seconds')}"
-        steps = "1 step" if self.steps == 1 else f"{self.steps} steps"
         solver = ", or install the extra `solvers`" if self.unaided else ""
-        return f"not decided within {steps}; allow more by {setting('steps')}{solver}"
+        return f"not decided within {counted(self.steps, 'step')}; allow more by {setting('steps')}{solver}"
 
     def _repr_html_(self) -> str:
         return f"<pre>{self}</pre>"  # words and numbers of selfconf: nothing in it has to be escaped

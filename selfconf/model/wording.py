@@ -81,6 +81,11 @@ def listed(names: Iterable[str]) -> str:
     return f"{', '.join(words[:-1])} and {words[-1]}"
 
 
+def counted(number: int, thing: str) -> str:
+    """A number of things: `1 site`, `2 sites`."""
+    return f"{number} {thing}{'s' * (number != 1)}"
+
+
 def in_english(messages: Iterable[tuple[str, str]]) -> str:
     """Of the language tags and texts of a message that in none, or in English, as all others are; else the first."""
 

@@ -12,10 +12,11 @@ import pyoxigraph as ox
 
 from selfconf.errors import AuthorError
 from selfconf.model.setting_names import setting
+from selfconf.model.wording import counted
 from selfconf.rdf import turtle
 from selfconf.rdf.sparql import QUERY_PREFIXES, QueryAnswer
 from selfconf.rdf.vocabulary import XSD
-from selfconf.render import Names, count, table
+from selfconf.render import Names, table
 
 RESULT_FORMATS = ("table", "json", "csv", "tsv", "turtle")
 Cell = ox.NamedNode | ox.BlankNode | ox.Literal | ox.Triple | None
@@ -48,7 +49,7 @@ def _solutions(variables: Sequence[str], rows: Sequence[Sequence[Cell]], form: s
     if form == "tsv":
         return _tsv_results(variables, rows)
     if not variables:
-        return count(len(rows), "solution")
+        return counted(len(rows), "solution")
     return table(variables, [["" if cell is None else names(turtle.term(cell)) for cell in row] for row in rows])
 
 

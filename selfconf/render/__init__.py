@@ -1,6 +1,6 @@
 """Values for their readers: as text, as JSON, as HTML and as Mermaid. Nothing here decides anything.
 
-Text: `configuration_text`, `consequences_text`, `cost_text`, `refusal_text`, `undecided_text`, `table`, `count`;
+Text: `configuration_text`, `consequences_text`, `cost_text`, `refusal_text`, `undecided_text`, `table`;
 `unconnected_text` names interactions that connect nothing;
 `disobedience_text` names components that are out of control, and `disobedience` says that of one; `Names` shortens IRIs
 by prefixes, `short` without, `ecology_names` makes them for an ecology, and a `Name` is either; `alternative_text` says
@@ -26,7 +26,7 @@ from selfconf.render.bodies import (
 from selfconf.render.html import diagram, html_sections, html_table, html_text
 from selfconf.render.mermaid_diagram import mermaid
 from selfconf.render.names import Names, ecology_names, short
-from selfconf.render.tables import clock_time, count, duration, table
+from selfconf.render.tables import clock_time, duration, table
 from selfconf.render.text import (
     Name,
     alternative_text,
@@ -53,7 +53,6 @@ __all__ = [
     "consequences_text",
     "cost_body",
     "cost_text",
-    "count",
     "diagram",
     "disobedience",
     "disobedience_text",

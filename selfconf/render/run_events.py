@@ -20,10 +20,9 @@ from selfconf.model.run_event import (
     TaskWaiting,
 )
 from selfconf.model.term import IRI
-from selfconf.model.wording import MANY, one_line
+from selfconf.model.wording import MANY, counted, one_line
 from selfconf.render.bodies import configuration_body, refusal_body, undecided_body
 from selfconf.render.names import short
-from selfconf.render.tables import count
 from selfconf.render.text import Name, disobedience_text, refusal_text
 
 SENTENCES: Mapping[str, str] = {
@@ -64,7 +63,7 @@ def sentence(event: RunEvent, name: Name) -> str:
     if isinstance(event, SearchEnded):
         facts |= {"found": _outcome(event), "milliseconds": event.seconds * 1000}
     if isinstance(event, EcologyDiscovered):
-        facts["components"] = count(event.components, "component")
+        facts["components"] = counted(event.components, "component")
         facts["missing"] = "".join(f"; site {site} did not answer in full" for site in event.missing[:MANY])
         if len(event.missing) > MANY:
             facts["missing"] += f"; nor did {len(event.missing) - MANY} others"
@@ -107,7 +106,7 @@ def lost_sentences(losses: Mapping[IRI, str], name: Name, told: Collection[IRI] 
 
 def _outcome(event: SearchEnded) -> str:
     if isinstance(event.outcome, Configuration):
-        return count(len(event.outcome.components), "component")
+        return counted(len(event.outcome.components), "component")
     return "no answer" if isinstance(event.outcome, Undecided) else "no configuration"
 
 

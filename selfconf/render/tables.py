@@ -1,14 +1,9 @@
-"""Tables, counts and times in plain text."""
+"""Tables and times in plain text."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from datetime import datetime
-
-
-def count(number: int, thing: str) -> str:
-    """A number of things: `1 site`, `2 sites`."""
-    return f"{number} {thing}" if number == 1 else f"{number} {thing}s"
 
 
 def duration(seconds: float) -> str:

@@ -18,7 +18,7 @@ from selfconf.model.refusal import Reason, Refusal, Undecided
 from selfconf.model.relaxation import Relaxation
 from selfconf.model.template import Interaction
 from selfconf.model.term import IRI, Term
-from selfconf.model.wording import one_line
+from selfconf.model.wording import counted, one_line
 from selfconf.render.bodies import double
 from selfconf.render.tables import clock_time
 
@@ -91,8 +91,8 @@ def cost_text(optimum: Optimum, unknown: Iterable[IRI], name: Name) -> str:
         unproved += ", which the extra `solvers` would tell"
     lines.append(f"  {'proved: nothing costs less' if optimum.proved else unproved}")
     if optimum.missing:
-        terms = "1 term is" if optimum.unknown_terms == 1 else f"{optimum.unknown_terms} terms are"
-        lines.append(f"  {terms} unknown, and left out of the sums (sc:otherwise would say what to count)")
+        terms, are = counted(optimum.unknown_terms, "term"), "is" if optimum.unknown_terms == 1 else "are"
+        lines.append(f"  {terms} {are} unknown, and left out of the sums (sc:otherwise would say what to count)")
     unstated = set(unknown)
     lines += [f"    no component of the ecology has a number for {name(one)}" for one in sorted(unstated)]
     told = dict.fromkeys(pair for pair in optimum.missing if pair[1] not in unstated)
@@ -109,7 +109,7 @@ def alternative_text(one: Alternative, chosen: Alternative | None, some_held: bo
     if one.cost:
         said.append(f"cost {_amounts(one.cost)}")
     if one.unknown_terms:
-        said.append(f"{one.unknown_terms} {'term' if one.unknown_terms == 1 else 'terms'} of the cost unknown")
+        said.append(f"{counted(one.unknown_terms, 'term')} of the cost unknown")
     return f"{', '.join(said)}; {_outcome(one, chosen, some_held)}"
 
 

@@ -27,10 +27,10 @@ from selfconf.model.immutable import replace
 from selfconf.model.refusal import Refusal, Undecided
 from selfconf.model.run_event import AnyRunEvent, TaskRefused, TaskWaiting
 from selfconf.model.term import IRI
+from selfconf.model.wording import counted
 from selfconf.protocol.keys import Keys
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.turtle import Document, parse
-from selfconf.render import count
 from selfconf.sdk import Component, ComponentRuntime
 from selfconf.site import Shelf, Site
 
@@ -301,7 +301,7 @@ class MemoryEcology:
         return self.network.run(condition, checked_delay(seconds))
 
     def __repr__(self) -> str:
-        return f"<ecology in memory of {count(len(self.advertisements), 'component')} after {self.time:.1f} s>"
+        return f"<ecology in memory of {counted(len(self.advertisements), 'component')} after {self.time:.1f} s>"
 
     def _advertised(self, component: Component, advertisement: str | Path | None) -> Advertisement:
         """What is advertised of a component that is to live."""

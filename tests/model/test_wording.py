@@ -12,6 +12,7 @@ from selfconf.model.wording import (
     MANY,
     as_typed,
     client_text,
+    counted,
     in_english,
     in_full,
     in_words,
@@ -86,3 +87,8 @@ def test_a_kind_has_the_article_of_its_first_letter() -> None:
         "a double",
         "a ",
     ]
+
+
+@pytest.mark.parametrize(("number", "words"), [(0, "0 sites"), (1, "1 site"), (2, "2 sites")])
+def test_one_is_one(number: int, words: str) -> None:
+    assert counted(number, "site") == words

@@ -6,7 +6,7 @@ from datetime import datetime, timedelta
 
 import pytest
 
-from selfconf.render import clock_time, count, duration, table
+from selfconf.render import clock_time, duration, table
 
 
 def test_the_columns_of_a_table_are_as_wide_as_their_widest_cell() -> None:
@@ -29,11 +29,6 @@ def test_no_line_ends_with_blanks() -> None:
 def test_a_row_with_a_cell_too_many_is_no_row() -> None:
     with pytest.raises(ValueError, match="argument"):
         table(["a"], [["1", "2"]])
-
-
-@pytest.mark.parametrize(("number", "words"), [(0, "0 sites"), (1, "1 site"), (2, "2 sites")])
-def test_one_is_one(number: int, words: str) -> None:
-    assert count(number, "site") == words
 
 
 @pytest.mark.parametrize(

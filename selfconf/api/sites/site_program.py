@@ -31,11 +31,11 @@ from selfconf.model.hierarchy import Reasoning
 from selfconf.model.immutable import immutable, replace
 from selfconf.model.setting_names import setting
 from selfconf.model.term import IRI
+from selfconf.model.wording import counted
 from selfconf.protocol.endpoints import endpoint_host
 from selfconf.protocol.keys import checked_name, life_of
 from selfconf.protocol.messages import TaskRecord
 from selfconf.rdf.advertisements import Advertisement
-from selfconf.render import count
 from selfconf.site import ProcessSettings, Shelf, Site, forget_oldest
 from selfconf.termination import Termination
 
@@ -185,7 +185,7 @@ class _SiteProgram:
         advertisements = self._site.shelf.advertisements
         for unknown in unknown_in_ecology(advertisements):
             self._complain(unknown)
-        served = count(len(advertisements), "advertisement") + " so far" * (not advertisements)  # as of a bridge
+        served = counted(len(advertisements), "advertisement") + " so far" * (not advertisements)  # as of a bridge
         how = " without keys, open to everybody who reaches it" if self._is_open_to_all else ""
         where = f"{self._joining.endpoint}{how}"
         self._complain(f"site {self._name} of ecology {self._ecology} serves {served} on {where}")

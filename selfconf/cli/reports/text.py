@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from selfconf.cli.terminal import paint
 from selfconf.model.diagnostic import Diagnostic, Report, Severity
-from selfconf.model.wording import one_line
+from selfconf.model.wording import counted, one_line
 
 _COLOURS = {Severity.ERROR: "red", Severity.WARNING: "yellow"}
 
@@ -29,20 +29,17 @@ def line(found: Diagnostic) -> str:
 def summary(report: Report) -> str:
     """What became of all the files, in one sentence."""
     number = len(report.files)
-    files = f"{number} file{'s' * (number != 1)}"
+    files = counted(number, "file")
     if not report.diagnostics:
         return f"{_conforming(files, number)}."
-    counted = " and ".join(filter(None, (_counted(report.errors, "error"), _counted(report.warnings, "warning"))))
+    kinds = (report.errors, "error"), (report.warnings, "warning")
+    problems = " and ".join(counted(of_kind, kind) for of_kind, kind in kinds if of_kind)
     concerned = len({found.file for found in report.diagnostics}.intersection(report.files))
-    return f"{counted} in {concerned} of {files}." if concerned else f"{counted}; {_conforming(files, number)}."
+    return f"{problems} in {concerned} of {files}." if concerned else f"{problems}; {_conforming(files, number)}."
 
 
 def _conforming(files: str, number: int) -> str:
     return f"{files} conform{'s' * (number == 1)}"
-
-
-def _counted(number: int, noun: str) -> str:
-    return f"{number} {noun}{'s' * (number != 1)}" if number else ""
 
 
 def _place(found: Diagnostic) -> str:
