@@ -19,6 +19,7 @@ call the one that stands behind it.
 from __future__ import annotations
 
 import logging
+import math
 import secrets
 from collections.abc import Callable, Mapping, Set
 from functools import partial
@@ -105,8 +106,10 @@ class InsideOfComposite:
         self.prospect: InsideProspect | None = None
         """What may come of the last inside that was refused."""
         self.settled = False
-        self.has_run = False
-        """Whether an inside has run in this life."""
+        self._runs_since = math.inf
+        """When the last inside began to run; infinity: none has run since one began."""
+        self.ran_for = 0.0
+        """For how many seconds the last inside that has ended was running."""
         self.ending = False
         self.dropped = 0
         self.runtime = ComponentRuntime(
@@ -144,7 +147,7 @@ class InsideOfComposite:
             self.runner.rewire(rests)
 
     def _begin(self, message: Apply) -> None:
-        self._values, self.prospect = dict(message.values), None
+        self._values, self.prospect, self._runs_since = dict(message.values), None, math.inf
         self._beginnings += 1
         try:
             request = self._request_with(self._values, lambda: self._wires.keys())
@@ -244,6 +247,7 @@ class InsideOfComposite:
         moved.undeclare()
 
     def _ended(self, refusal: Refusal | Undecided | None) -> None:
+        self.ran_for = max(0.0, self._bus.now() - self._runs_since)
         trouble = None if self.runner is None else self.runner.trouble
         if refusal is not None and self.runner is not None:
             self.prospect = InsideProspect(self._bus, self._ecology, self.runner.request, self.runner.state)
@@ -263,7 +267,8 @@ class InsideOfComposite:
 
     def _settle(self, runs: bool) -> None:
         self.settled = runs
-        self.has_run |= runs
+        if runs:
+            self._runs_since = self._bus.now()
         waiting, self._waiting = self._waiting, []
         for action in waiting:
             action()

@@ -1,7 +1,8 @@
 """Whether the inside of a composite that was refused can be configured again.
 
 A task that has ended hears nothing: that what other tasks held is free, or that what was lost lives a new life. So
-that is asked, and searched for again only where it is other than before, among what the site advertises by then.
+that is asked, and searched for again only where it is other than before, among what the site advertises by then. What
+has raised FAIL and could go on by now tells nothing: that is tried.
 """
 
 from __future__ import annotations
@@ -34,6 +35,8 @@ class InsideProspect:
         self._spent = {one: _spent(loss) for one, loss in state.lost.items() if not loss.busy}
         """The lives of each component that was lost in which it cannot act: where none was named, those that it lives
         now; until these are known one without a name."""
+        self._failed = frozenset(one for one in self._spent if state.lost[one].cause is Cause.FAIL)
+        """The components that have raised FAIL, and may have recovered in the life that they live."""
         self._searched: object = None
         """Among what, and without what, a search has found nothing."""
         for component in [one for one, spent in self._spent.items() if "" in spent]:
@@ -42,8 +45,11 @@ class InsideProspect:
     def _note_spent(self, component: IRI, keys: tuple[str, ...]) -> None:
         self._spent[component] = frozenset(map(life_of, keys))
 
-    def look(self, known: Mapping[IRI, Advertisement], able: Callable[[], None]) -> None:
-        """Call `able` if the inside can be configured from what is advertised, in the rank that it had."""
+    def look(self, known: Mapping[IRI, Advertisement], able: Callable[[], None], *, recovered: bool) -> None:
+        """Call `able` if the inside can be configured from what is advertised, in the rank that it had.
+
+        With `recovered`, what has raised FAIL and lives on counts as able to act; a composite does in another life.
+        """
         lives: dict[IRI, frozenset[str]] = {}
 
         def called(component: IRI, keys: tuple[str, ...]) -> None:
@@ -52,7 +58,9 @@ class InsideProspect:
                 ask()
 
         def ask() -> None:
-            ask_holders(self._bus, self._keys, "", partial(self._search, known, self._lost(lives), able))
+            tried = {one for one in self._failed if lives[one] and one in known and known[one].profile.inside is None}
+            lost = self._lost(lives) - tried if recovered else self._lost(lives)
+            ask_holders(self._bus, self._keys, "", partial(self._search, known, lost, able))
 
         for component in self._spent:
             self._bus.roll_call(self._keys.lives(component), SPENT_CALL, partial(called, component))

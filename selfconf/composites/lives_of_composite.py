@@ -14,7 +14,7 @@ from selfconf.bus.port import Bus
 from selfconf.bus.timer import Timer
 from selfconf.composites.inside_of_composite import InsideOfComposite
 from selfconf.composition import Inside
-from selfconf.deployment import Aside, RunRequest
+from selfconf.deployment import Aside, GrowingPause, RunRequest
 from selfconf.discovery import Beliefs
 from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import replace
@@ -26,7 +26,7 @@ from selfconf.rdf.advertisements import Advertisement
 
 LOOK_AT_REFUSED = 10.0
 """After how many seconds it is checked again whether an inside that was refused can be configured. The pause doubles
-with each life in which it does not run: perhaps the task that holds the composite holds what the inside lacks."""
+with each life that ends so soon: perhaps the task that holds the composite holds what the inside lacks."""
 LONGEST_LOOK = 320.0
 """The longest such pause, in seconds."""
 NEXT_LIFE = 0.5
@@ -53,19 +53,19 @@ class LivesOfComposite:
         """As what it was advertised when its life began."""
         self._begins = False
         """Whether it is about to begin a life."""
-        self._next_look = Timer(bus, LOOK_AT_REFUSED, self._look_again)
+        self._next_look = Timer(bus, LOOK_AT_REFUSED, lambda: self._look_again(recovered=True))
         """The next look at an inside that was refused."""
-        self._pause = LOOK_AT_REFUSED
-        """After how many seconds it is looked again, where it has begun a new life for that and has not run since."""
+        self._pause = GrowingPause(LOOK_AT_REFUSED, LONGEST_LOOK)
+        """After how long it is looked again."""
 
     def become(self, advertised: Mapping[IRI, Advertisement], able: Inside | None) -> None:
         """Live, or live no more, by what is advertised, from which its inside can be configured or not."""
         self._advertised, self._able = advertised, able
         self._end_outdated()
         if self._component not in advertised:
-            self._pause = LOOK_AT_REFUSED
+            self._pause.begin_anew()
         if self.living is not None and able is not None:
-            self._look_again()
+            self._look_again(recovered=False)
         elif able is not None and not self._begins:
             self._begins = True
             self._begin()
@@ -132,20 +132,20 @@ class LivesOfComposite:
             )
 
     def _rested(self) -> None:
+        if self.living is not None:
+            self._pause.failed_after(self.living.ran_for)
         self._end_outdated()
         self._look_later()
 
     def _look_later(self) -> None:
         self._next_look.stop()
         if self.living is not None and self.living.prospect is not None:
-            self._next_look.set(self._pause_after(self.living))
+            self._next_look.set(self._pause.seconds)
 
-    def _pause_after(self, living: InsideOfComposite) -> float:
-        """After how many seconds it is checked again whether the inside can be configured."""
-        return LOOK_AT_REFUSED if living.has_run else self._pause
-
-    def _look_again(self) -> None:
+    def _look_again(self, *, recovered: bool) -> None:
         """Begin a new life if the inside was refused and can be configured, as tasks count the composite as lost.
+
+        With `recovered`, what has raised FAIL inside and lives on counts as able to act.
 
         One that a task holds by now begins it later: the tasks that have lost it do not hear what becomes of that.
         """
@@ -156,10 +156,10 @@ class LivesOfComposite:
 
         def able() -> None:
             if not living.runtime.activation.holds and self.living is living:
-                self._pause = min(2 * self._pause_after(living), LONGEST_LOOK)
+                self._pause.tried()
                 self._end(living)
 
-        living.prospect.look(self._advertised, able)
+        living.prospect.look(self._advertised, able, recovered=recovered)
 
     def _request(self, inside: Inside, values: Mapping[str, Term], fed: Callable[[], Set[str]]) -> RunRequest:
         composer = inside.composer_with(values)

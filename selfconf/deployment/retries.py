@@ -12,6 +12,7 @@ import math
 from selfconf.bus.timer import Timer
 from selfconf.configurator import Appeared, Loss, Phase
 from selfconf.deployment.components import HeldLives
+from selfconf.deployment.growing_pause import GrowingPause
 from selfconf.deployment.task_context import TaskContext
 from selfconf.model.refusal import Undecided
 from selfconf.model.term import IRI
@@ -29,10 +30,7 @@ class _Retries:
     def __init__(self, context: TaskContext, lives: HeldLives) -> None:
         self._bus, self._ecology, self._lives = context.ecology.bus, context.ecology, lives
         self._state, self._step = context.state, context.step
-        self._pause = TRY_AGAIN
-
-    def _lengthen_pause(self) -> None:
-        self._pause = min(2 * self._pause, LONGEST_PAUSE)
+        self._pause = GrowingPause(TRY_AGAIN, LONGEST_PAUSE)
 
     def _may_be_able(self, component: IRI, loss: Loss) -> bool:
         """Whether a component lives, or its site can start it, and it obeys what it received last."""
@@ -52,21 +50,21 @@ class RetriesWhileRefused(_Retries):
         """When it is tried again, which may be overdue; None: no time is set."""
 
     def appeared(self) -> None:
-        """Try again soon, as something has appeared in the ecology."""
-        self._pause = TRY_AGAIN
+        """Try again soon, as something has appeared in the ecology; what is tried again has not come from outside."""
         if self._at is not None:
+            self._pause.begin_anew()
             self._at = min(self._at, self._bus.now() + TRY_AGAIN)
 
     def runs(self) -> None:
         """Begin with a short pause when the task is refused next, as it runs now."""
-        self._pause, self._at = TRY_AGAIN, None
+        self._pause.begin_anew()
+        self._at = None
 
     def plan(self) -> None:
         """Set the time; one that is set stays, as a site that is silent is asked often."""
         now = self._bus.now()
         if self._at is None:
-            self._at = now + self._pause
-            self._lengthen_pause()
+            self._at = now + self._pause.seconds
         self._timer.reset(max(0.0, self._at - now))
 
     def _try_again(self) -> None:
@@ -76,9 +74,8 @@ class RetriesWhileRefused(_Retries):
             return  # it is overdue when the task is refused again
         self._at = None
         if state.lost or (isinstance(state.refusal, Undecided) and state.refusal.seconds is not None):
-            pause = self._pause
+            self._pause.tried()
             self._step(Appeared({one: "" for one, loss in state.lost.items() if self._may_be_able(one, loss)}))
-            self._pause = pause  # what has not come from outside is no reason to try again sooner
         else:
             self.plan()
 
@@ -96,9 +93,8 @@ class RetriesWhileRunning(_Retries):
         """Set the time, if something has raised FAIL and none is set."""
         if self._timer.is_set or all(loss.cause is not Cause.FAIL for loss in self._state().lost.values()):
             return
-        if self._bus.now() - self._tried_at > LONGEST_PAUSE:  # all was well meanwhile
-            self._pause = TRY_AGAIN
-        self._timer.set(self._pause)
+        self._pause.failed_after(self._bus.now() - self._tried_at)
+        self._timer.set(self._pause.seconds)
 
     def _try_again(self) -> None:
         """Count what has raised FAIL as able again; it takes the place of nothing before it delivers.
@@ -109,7 +105,7 @@ class RetriesWhileRunning(_Retries):
             return
         if able := self._failed():
             self._step(Appeared(able))
-        self._lengthen_pause()
+        self._pause.tried()
         self._tried_at = self._bus.now()
         self.plan()
 

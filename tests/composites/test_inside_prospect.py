@@ -59,10 +59,10 @@ class Prospect:
         self.prospect = InsideProspect(self.lab.network.node(), "lab", request, state)
         self.known = {one.component: one for one in files.advertisements(folder / "home" / "lens.ttl")[0]}
 
-    def able(self) -> bool:
+    def able(self, *, recovered: bool = False) -> bool:
         """Whether a look finds that the inside can be configured."""
         found: list[bool] = []
-        self.prospect.look(self.known, lambda: found.append(True))
+        self.prospect.look(self.known, lambda: found.append(True), recovered=recovered)
         self.lab.let_pass(5.0)
         return bool(found)
 
@@ -101,6 +101,18 @@ def test_a_component_that_was_lost_counts_again_in_a_new_life(tmp_path: Path, li
     prospect.lab.component("lens")
     prospect.lab.let_pass(3.0)
     assert prospect.able()
+
+
+@pytest.mark.parametrize(("cause", "able"), [(Cause.FAIL, True), (Cause.HUNG, False)])
+def test_only_a_component_that_has_raised_fail_may_have_recovered_in_the_same_life(
+    tmp_path: Path, cause: Cause, able: bool
+) -> None:
+    prospect = Prospect(tmp_path, loss=Loss(cause, "it is dirty", "lens1"))
+    assert not prospect.able()
+    assert prospect.able(recovered=True) is able
+    prospect.lab.crash("lens")
+    prospect.lab.let_pass(3.0)
+    assert not prospect.able(recovered=True)
 
 
 def test_a_component_that_did_not_live_counts_once_it_does_however_late_it_is_looked_at(tmp_path: Path) -> None:
