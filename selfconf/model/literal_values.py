@@ -125,12 +125,18 @@ def plain_number(term: Term) -> int | float | None:
     return int(found) if term.datatype in WHOLE_NUMBERS else float(found)
 
 
-def natural_number(term: Term) -> int | None:
-    """The number from zero on that a literal of xsd:integer stands for, as in `sh:minCount`; None for anything else."""
+def integer(term: Term) -> int | None:
+    """The number that a literal of xsd:integer stands for, as in `sc:priority`; None for anything else."""
     if not isinstance(term, Literal) or term.datatype != INTEGER:
         return None
     found = number(term)
-    return None if found is None or found < 0 else int(found)
+    return None if found is None else int(found)
+
+
+def natural_number(term: Term) -> int | None:
+    """The number from zero on that a literal of xsd:integer stands for, as in `sh:minCount`; None for anything else."""
+    found = integer(term)
+    return None if found is None or found < 0 else found
 
 
 INTEGER = XSD_NAMESPACE + "integer"

@@ -13,6 +13,7 @@ from selfconf.model.literal_values import (
     WHOLE_NUMBERS,
     as_python,
     fraction,
+    integer,
     natural_number,
     number,
     of_range,
@@ -67,6 +68,12 @@ def test_a_number_is_read_exactly_as_it_is_written(lexical: str, datatype: str, 
 def test_a_literal_that_is_no_measurement_is_no_number(lexical: str, datatype: str) -> None:
     assert number(literal(lexical, datatype)) is None
     assert plain_number(literal(lexical, datatype)) is None
+
+
+def test_an_integer_may_lie_below_zero_and_has_one_datatype() -> None:
+    assert integer(literal("-07", "integer")) == -7
+    assert integer(literal("-7", "int")) is None
+    assert integer(literal("7.0", "integer")) is None
 
 
 @pytest.mark.parametrize(("lexical", "found"), [("0", 0), ("-0", 0), ("+1", 1), ("007", 7), ("-1", None), (" 1", None)])

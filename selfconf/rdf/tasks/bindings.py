@@ -13,7 +13,7 @@ import pyoxigraph as ox
 from selfconf.errors import BindingError
 from selfconf.model.curie import SCHEMES, is_local_name, is_prefix, suggested_local_name
 from selfconf.model.immutable import replace
-from selfconf.model.literal_values import number_of
+from selfconf.model.literal_values import in_lexical_space, number_of, truth
 from selfconf.model.setting_names import binding
 from selfconf.model.template import Parameter, Template
 from selfconf.model.term import IRI, STRING, BlankNode, Literal, Term
@@ -31,18 +31,6 @@ _PATHS = frozenset((SH.path, SH.inversePath, SH.alternativePath, SH.zeroOrMorePa
 _LISTS = frozenset((SH.languageIn, SH.ignoredProperties))
 _NAMING = frozenset((SH.equals, SH.disjoint, SH.lessThan, SH.lessThanOrEquals, SH.datatype, SH.nodeKind))
 """What has the name of a property, a datatype or a kind of node as its value, which no component states as one."""
-_PLAIN = {
-    STRING: re.compile(r"(?s).*"),
-    XSD.integer: re.compile(r"[+-]?[0-9]+"),
-    XSD.decimal: re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)"),
-    XSD.double: re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?"),
-    XSD.float: re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?"),
-    XSD.boolean: re.compile("true|false"),
-}
-"""How most literals of these datatypes are written, so that rdflib need not be asked whether they are well-typed.
-
-Digits are spelt out, as `\\d` has those of all scripts.
-"""
 _LATER = IRI("urn:selfconf:later")
 """What stands for a value that is set later."""
 _NUMBERS = frozenset((XSD.integer, XSD.decimal, XSD.double, XSD.float))
@@ -127,8 +115,7 @@ def _writable(name: str, value: str | Term) -> None:
 
 def _well_typed(name: str, value: Term) -> None:
     """Raises BindingError for a literal that is none of its datatype, as `"abc"^^xsd:integer`."""
-    plain = _PLAIN.get(value.datatype) if isinstance(value, Literal) else None
-    if not isinstance(value, Literal) or (plain is not None and plain.fullmatch(value.lexical)):
+    if not isinstance(value, Literal) or _is_plain(value):
         return
     from selfconf.rdf import literal_comparison  # loads rdflib, which few values need
 
@@ -136,6 +123,13 @@ def _well_typed(name: str, value: Term) -> None:
         said = in_full([value])
         problem = f"it is no {value.datatype.short}"
         raise BindingError(f"{said} cannot stand for the parameter {name!r}: {problem}", parameter=name)
+
+
+def _is_plain(value: Literal) -> bool:
+    """Whether a literal is certainly one of its datatype, as most are."""
+    if value.datatype in _NUMBERS:
+        return in_lexical_space(value.lexical, value.datatype)
+    return value.datatype == STRING or truth(value) is not None
 
 
 def complete(given: TaskDocument, later: Container[str] = ()) -> TaskDocument:

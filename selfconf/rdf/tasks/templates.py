@@ -6,7 +6,6 @@ and a test holds the two together: no wrong template or task is read, whatever e
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Iterator
 from fractions import Fraction
@@ -14,7 +13,7 @@ from fractions import Fraction
 from selfconf.errors import TemplateError
 from selfconf.model.cost import CostLevel, CostTerm
 from selfconf.model.immutable import immutable
-from selfconf.model.literal_values import fraction
+from selfconf.model.literal_values import fraction, integer
 from selfconf.model.setting_names import setting
 from selfconf.model.template import MOST_PRIORITY, Task, Template
 from selfconf.model.term import IRI, Literal, Term
@@ -26,9 +25,8 @@ from selfconf.rdf.tasks.parameters import misfits, parameters_of
 from selfconf.rdf.tasks.ports import PORT_LINKS, template_ports
 from selfconf.rdf.tasks.roles import roles_of
 from selfconf.rdf.turtle import Document, ListFault, Node
-from selfconf.rdf.vocabulary import FIRST, LABEL, SC, TYPE, XSD
+from selfconf.rdf.vocabulary import FIRST, LABEL, SC, TYPE
 
-_PRIORITY = re.compile(r"[+-]?[0-9]{1,300}")
 _SAID_OF = {
     SC[name]: SAID_BY[SC[name]] for name in ("feeds", "sets", "minCount", "maxCount", "recruits", "cost", "priority")
 }
@@ -159,14 +157,13 @@ class _Reader(DocumentReader):
         values = self.document.values(subject, SC.priority)
         if not values:
             return None
-        value = values[0]
-        whole = isinstance(value, Literal) and value.datatype == XSD.integer and _PRIORITY.fullmatch(value.lexical)
-        if len(values) > 1 or not isinstance(value, Literal) or not whole or abs(int(value.lexical)) > MOST_PRIORITY:
+        priority = integer(values[0])
+        if len(values) > 1 or priority is None or abs(priority) > MOST_PRIORITY:
             problem = (
                 f"the sc:priority of {worded(subject)} is one whole number from {-MOST_PRIORITY} to {MOST_PRIORITY}"
             )
             raise self.mistake(problem, subject, SC.priority, values[-1])
-        return int(value.lexical)
+        return priority
 
     def _listed(self, template: IRI) -> list[Term]:
         """The members of the list of roles."""

@@ -18,7 +18,7 @@ from rdflib.term import Node
 from selfconf.model.term import IRI
 from selfconf.rdf.rdflib_terms import from_rdflib
 from selfconf.rdf.shacl import MatchTooCostly, ValueTest, compiled, exclude, passed_by_none
-from selfconf.rdf.validation.lints.normal_form import NormalForm, ShapeStatement, ValueNormalForm
+from selfconf.rdf.validation.lints.normal_form import NormalForm, ShapeStatement, ValueNormalForm, count_of
 
 _KINDS: dict[Node, frozenset[type]] = {
     SH.IRI: frozenset((URIRef,)),
@@ -145,9 +145,10 @@ def _values(normal: NormalForm, values: ValueNormalForm) -> Iterator[ShapeContra
 
 
 def _counts(normal: NormalForm, shape: Node, predicate: Node) -> Iterator[tuple[int, ShapeStatement]]:
-    for count in normal.source.values(shape, predicate):
-        if isinstance(count, Literal) and isinstance(count.value, int):
-            yield count.value, (shape, predicate, count)
+    for value in normal.source.values(shape, predicate):
+        number = count_of(value)
+        if number is not None:
+            yield number, (shape, predicate, value)
 
 
 def _culprit(normal: NormalForm, value: Node, besides: ShapeStatement) -> ShapeStatement | None:

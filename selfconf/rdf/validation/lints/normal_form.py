@@ -17,6 +17,8 @@ from functools import cached_property
 from rdflib import RDF, RDFS, SH, Graph, Literal, URIRef
 from rdflib.term import Node
 
+from selfconf.model.literal_values import natural_number
+from selfconf.rdf.rdflib_terms import from_rdflib
 from selfconf.rdf.vocabulary import SC
 
 ShapeStatement = tuple[Node, Node, Node]
@@ -40,6 +42,11 @@ _SILENT = frozenset(
         SH.targetNode, SH.targetClass, SH.targetSubjectsOf, SH.targetObjectsOf, SH.ignoredProperties,
     )
 )  # fmt: skip
+
+
+def count_of(value: Node) -> int | None:
+    """The number of values that `sh:minCount` and the like say; None for what is no such number."""
+    return natural_number(from_rdflib(value))
 
 
 class ShapeSource:
@@ -198,15 +205,12 @@ class ValueNormalForm:
         self.shapes.append(shape)
         for predicate, value in self.source.about(shape):
             statement = (shape, predicate, value)
-            number = value.value if isinstance(value, Literal) and isinstance(value.value, int) else None
             if predicate == SH.hasValue:
                 self.least.append((1, statement))
                 if not self.source.variable(value):
                     self.required.append(statement)
-            elif predicate in AT_LEAST and number is not None:
-                self.least.append((number, statement))
-            elif predicate in AT_MOST and number is not None:
-                self.most.append((number, statement))
+            elif predicate in AT_LEAST | AT_MOST and (number := count_of(value)) is not None:
+                (self.least if predicate in AT_LEAST else self.most).append((number, statement))
             if predicate in AT_LEAST | AT_MOST | {SH.hasValue} and self.source.variable(value):
                 self._node.whole = False
 
