@@ -1,15 +1,18 @@
 """What pySHACL is shown of components and says of them, kept as long as it holds.
 
+A shape that mentions a free parameter is judged once for each value that may make a difference to it.
+
 Judging is dear, and ecologies change by a few components at a time. Most roles are compiled in full; then neither
 rdflib nor pySHACL is loaded.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Container, Iterator, Mapping, Sequence
+from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
+from selfconf.errors import TemplateError
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.obstacle import NotJudged, ShapeViolated
 from selfconf.model.term import IRI, Term
@@ -18,6 +21,7 @@ from selfconf.rdf.eligibility import free_values
 from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex
 from selfconf.rdf.eligibility.compiled_roles import bound_shape, called, left_to_judge
 from selfconf.rdf.eligibility.role_tests import CompiledRole
+from selfconf.rdf.tasks import mentions
 from selfconf.rdf.turtle import Document, Triple
 from selfconf.rdf.vocabulary import RDFS, TYPE
 
@@ -30,6 +34,11 @@ Values = Mapping[IRI, Term]
 """Values of free parameters, with which a shape is judged."""
 _Question = tuple[IRI, frozenset[tuple[IRI, Term]] | None]
 """A shape, and the values of free parameters; None for whatever values."""
+
+
+def another_value(parameter: IRI) -> IRI:
+    """A value that no component has: what it lets pass, any value lets pass. Words call it what the parameter is."""
+    return IRI.unchecked(f"urn:selfconf:another-value#{parameter.short}")
 
 
 class Judgements:
@@ -83,12 +92,16 @@ class Judgements:
 class ShapeJudge:
     """Has pySHACL judge components by the shapes of one document, under a hierarchy."""
 
-    def __init__(self, document: Document, hierarchy: Hierarchy) -> None:
-        self._document, self._hierarchy = document, hierarchy
+    def __init__(self, document: Document, hierarchy: Hierarchy, free: Mapping[IRI, str]) -> None:
+        """`free` are the free parameters that are left in the shapes, each with its name."""
+        self._document, self._hierarchy, self._free = document, hierarchy, free
         self._kept = Judgements()
+        self.not_judged: dict[IRI, NotJudged] = {}
+        """Of the ecology that was looked at last: the components that cannot be judged, or not in time, and why."""
 
     def look_at(self, ecology: AdvertisementIndex) -> None:
         """Keep what is said of an ecology from now on, and of what was said before what holds in it."""
+        self.not_judged = {}
         self._kept.look_at(ecology)
 
     def violations(
@@ -106,7 +119,45 @@ class ShapeJudge:
         for advertisement in asked:
             said[advertisement] = violations = tuple(wrong.get(advertisement.component, ()))
             self._kept.keep(role, advertisement, values, ecology, violations)
-        return {advertisement.component: violations for advertisement, violations in said.items() if violations}
+        found = {advertisement.component: violations for advertisement, violations in said.items() if violations}
+        for component, violations in found.items():
+            self.not_judged.update((component, one) for one in violations if isinstance(one, NotJudged))
+        return found
+
+    def mentioned(self, role: CompiledRole) -> IRI | None:
+        """The free parameter that the shape of a role mentions where pySHACL judges it, if it does."""
+        parameters = mentions(left_to_judge(self._document, role), role.iri, frozenset(self._free))
+        if len(parameters) > 1:
+            names = " and ".join(sorted(self._free[parameter] for parameter in parameters))
+            raise TemplateError(
+                f"the role {role.iri!r} mentions the free parameters {names} in one shape that is judged by pySHACL; "
+                "bind all but one of them",
+                file=self._document.source,
+            )
+        return next(iter(parameters), None)
+
+    def values_of(self, parameter: IRI, role: CompiledRole, shown: Collection[Advertisement]) -> set[Term]:
+        """The values of a free parameter that may make a difference where pySHACL judges a role: listed, or seen."""
+        asked = left_to_judge(self._document, role)
+        seen = free_values.seen(asked, role.iri, self.visible(shown))
+        return seen | free_values.enumerated(self._document, parameter)
+
+    def by_value(
+        self,
+        role: CompiledRole,
+        parameter: IRI,
+        values: Iterable[Term],
+        focus: Sequence[Advertisement],
+        ecology: AdvertisementIndex,
+    ) -> Iterator[tuple[Term, dict[IRI, Violations]]]:
+        """What pySHACL finds wrong with some components for each value of the free parameter that a role mentions.
+
+        First for any other value than these, unless the parameter lists its values.
+        """
+        subjects = self.subjects(role, focus, ecology)
+        others = () if free_values.enumerated(self._document, parameter) else (another_value(parameter),)
+        for value in (*others, *values):
+            yield value, self.violations(role, focus, ecology, {parameter: value}, subjects)
 
     def _judged(
         self,

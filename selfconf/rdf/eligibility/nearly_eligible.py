@@ -15,8 +15,8 @@ from selfconf.model.partition import Barred, NearMiss
 from selfconf.model.term import IRI, Term, sort_key
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex, TypeSet
-from selfconf.rdf.eligibility.judgements import Violations
-from selfconf.rdf.eligibility.partitioner import Advertisements, Partitioner, Tested, TestOutcome, another_value
+from selfconf.rdf.eligibility.judgements import Violations, another_value
+from selfconf.rdf.eligibility.partitioner import Advertisements, Partitioner, Tested, TestOutcome
 from selfconf.rdf.eligibility.role_tests import CompiledRole, ParameterTest, PropertyTest
 
 JUDGED = 24
@@ -120,9 +120,9 @@ class _RoleExclusions:
 
         Where no value leaves less than the parameter itself, the parameter is named.
         """
-        judged = self.partitioner.violations(self.role, passed, self.ecology, {})
+        judged = self.partitioner.judge.violations(self.role, passed, self.ecology, {})
         unbound: dict[Advertisement, tuple[Obstacle, ...]] = {a: judged.get(a.component, ()) for a in passed}
-        parameter = self.partitioner.mentioned(self.role)
+        parameter = self.partitioner.judge.mentioned(self.role)
         if parameter is None:
             return unbound
         reasons = self._reasons(parameter, dict.fromkeys(passed, ()))
@@ -161,7 +161,7 @@ class _RoleExclusions:
         """The components that pySHACL finds to be kept out by one thing, for some value of the free parameter."""
         obstacles = {a: verdict.obstacles for _, alike, verdict in few for a in alike}
         focus = _focus(obstacles)
-        parameter = self.partitioner.mentioned(self.role)
+        parameter = self.partitioner.judge.mentioned(self.role)
         settled = {a: {p: v for p, v in self._let_in(a).items() if p != parameter} for a in focus}
         forbidden = {a: self._forbidden(allows) for a, allows in settled.items()}
         told = {a: [*obstacles[a], *forbidden[a].values()] for a in focus}
@@ -191,10 +191,10 @@ class _RoleExclusions:
     ) -> Iterable[tuple[Term, Mapping[IRI, Violations]]]:
         """What pySHACL finds for each of some values of a free parameter; without a parameter, once."""
         if parameter is None:
-            return [(_NO_VALUE, self.partitioner.violations(self.role, focus, self.ecology, {}))]
-        stated = self.partitioner.values_of(parameter, self.role, focus)
+            return [(_NO_VALUE, self.partitioner.judge.violations(self.role, focus, self.ecology, {}))]
+        stated = self.partitioner.judge.values_of(parameter, self.role, focus)
         suitable = sorted(self.partitioner.suitable.of(parameter, frozenset(stated)), key=sort_key)[:JUDGED]
-        return self.partitioner.judged_by_value(self.role, parameter, suitable, focus, self.ecology)
+        return self.partitioner.judge.by_value(self.role, parameter, suitable, focus, self.ecology)
 
     def _failed(self, advertisement: Advertisement) -> set[IRI | None]:
         """The property over which a test of the shape has failed, if one has; None stands for the component itself."""

@@ -7,13 +7,11 @@ says more than the tests, pySHACL judges the components that pass them, all in o
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from copy import copy
 from functools import partial
 from itertools import chain
-from typing import TYPE_CHECKING
 
-from selfconf.errors import TemplateError
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.immutable import immutable, replace
 from selfconf.model.obstacle import NotJudged, Obstacle
@@ -39,7 +37,7 @@ from selfconf.rdf.eligibility.advertisement_index import (
     ClassClosure,
     TypeSet,
 )
-from selfconf.rdf.eligibility.compiled_roles import compile_role, left_to_judge, suppliers_of, with_named_suppliers
+from selfconf.rdf.eligibility.compiled_roles import compile_role, suppliers_of, with_named_suppliers
 from selfconf.rdf.eligibility.free_values import (
     conjuncts,
     contradictory,
@@ -48,16 +46,13 @@ from selfconf.rdf.eligibility.free_values import (
     mentions_of,
     stated_on_paths,
 )
-from selfconf.rdf.eligibility.judgements import ShapeJudge, Values, Violations
+from selfconf.rdf.eligibility.judgements import ShapeJudge, another_value
 from selfconf.rdf.eligibility.logical_constraints import in_doubt, passable
 from selfconf.rdf.eligibility.role_tests import CompiledRole, Count
 from selfconf.rdf.eligibility.wanted_signals import required_signals
 from selfconf.rdf.tasks import TaskDocument, free_parameters, mentions, substituted
 from selfconf.rdf.turtle import Document, Triple
 from selfconf.rdf.vocabulary import SC, TYPE
-
-if TYPE_CHECKING:
-    import rdflib
 
 Advertisements = Mapping[IRI, Advertisement] | Iterable[Advertisement]
 _NOTHING: Mapping[IRI, frozenset[Term]] = {}
@@ -81,11 +76,6 @@ class TestOutcome:
     allows: Mapping[IRI, frozenset[Term]]
 
 
-def another_value(parameter: IRI) -> IRI:
-    """A value that no component has: what it lets pass, any value lets pass. Words call it what the parameter is."""
-    return IRI.unchecked(f"urn:selfconf:another-value#{parameter.short}")
-
-
 Passed = tuple[Advertisement, TestOutcome]
 """A component that passes the tests of a role, with what they say of it."""
 Tested = tuple[TypeSet, Sequence[Advertisement], TestOutcome]
@@ -105,11 +95,18 @@ class Partitioner:
         self.suppliers = self._compiled_suppliers()
         """For each role that recruits, by number, the tests of what may supply its players."""
         self._above = ClassClosure(hierarchy)
-        self.not_judged: dict[IRI, NotJudged] = {}
-        """Of the ecology that was partitioned last: the components that cannot be judged, or not in time, and why."""
-        self.judge = ShapeJudge(self.document, hierarchy)
+        self.judge = self._judge()
         self._acceptance = Acceptance(hierarchy)
         self.suitable = free_values.Suitable(self._parameters, self.document)
+
+    def _judge(self) -> ShapeJudge:
+        """What judges components by pySHACL, by the shapes as they stand in the document."""
+        return ShapeJudge(self.document, self.hierarchy, {one: self._parameters[one].name for one in self.free})
+
+    @property
+    def not_judged(self) -> dict[IRI, NotJudged]:
+        """Of the ecology that was partitioned last: the components that cannot be judged, or not in time, and why."""
+        return self.judge.not_judged
 
     def _compiled(self, role: Role) -> CompiledRole:
         """The tests of a role, by its shape as it stands in the document."""
@@ -127,8 +124,7 @@ class Partitioner:
         other.hierarchy, other._above = hierarchy, ClassClosure(hierarchy)
         other.roles = tuple(map(other._compiled, self.task.template.roles))
         other.suppliers = other._compiled_suppliers()
-        other.judge = ShapeJudge(self.document, hierarchy)
-        other.not_judged, other._acceptance = {}, Acceptance(hierarchy)
+        other.judge, other._acceptance = other._judge(), Acceptance(hierarchy)
         return other
 
     def reading(self, document: Document, role: IRI) -> Partitioner:
@@ -136,7 +132,7 @@ class Partitioner:
         other = copy(self)
         other.document = document
         other.roles = (other._compiled(self.task.template.role(role)),)
-        other.not_judged, other.judge = {}, ShapeJudge(document, self.hierarchy)
+        other.judge = other._judge()
         return other
 
     def partition(self, advertisements: Advertisements) -> Partition:
@@ -159,7 +155,7 @@ class Partitioner:
             *self._mentions(variables),
         )
         judged = self.judged(found, ecology)
-        self.not_judged |= self._acceptance.not_judged
+        self.not_judged.update(self._acceptance.not_judged)
         return replace(judged, unissuable=self._acceptance.unissuable(self.task.template, judged, self._looked_at))
 
     def judged(self, partition: Partition, ecology: AdvertisementIndex) -> Partition:
@@ -191,7 +187,7 @@ class Partitioner:
         roles: dict[IRI, set[int]] = {}
         for number, tests in self.suppliers.items():
             passed = [advertisement for advertisement, _ in self._passed(tests, ecology)]
-            outside = {} if tests.complete else self.violations(tests, passed, ecology, {})
+            outside = {} if tests.complete else self.judge.violations(tests, passed, ecology, {})
             for advertisement in passed:
                 if advertisement.component not in outside:
                     roles.setdefault(advertisement.component, set()).add(number)
@@ -204,7 +200,7 @@ class Partitioner:
         found = tests.obstacles(one.profile, self.hierarchy)
         if found or tests.complete:
             return found
-        return self.violations(tests, [one], ecology, {}).get(one.component, ())
+        return self.judge.violations(tests, [one], ecology, {}).get(one.component, ())
 
     def akin(self, role: CompiledRole, ecology: AdvertisementIndex) -> Iterator[TypeSet]:
         """The kinds that are of the classes that a role asks for, where these are alternatives of those of one."""
@@ -224,18 +220,17 @@ class Partitioner:
 
     def eligible(self, ecology: AdvertisementIndex) -> list[list[EligibleComponent]]:
         """For each role the components that conform to it, unordered. Raises TemplateError."""
-        self.not_judged = {}
         self.judge.look_at(ecology)
         found: list[list[EligibleComponent]] = []
         by_value: dict[int, tuple[IRI, list[Passed]]] = {}
         for number, role in enumerate(self.roles):
             passed = self._issuing(role, self._passed(role, ecology))
-            parameter = None if role.complete else self.mentioned(role)
+            parameter = None if role.complete else self.judge.mentioned(role)
             if parameter is not None:
                 by_value[number] = parameter, passed
                 passed = []
             elif not role.complete:
-                outside = self.violations(role, [a for a, _ in passed], ecology, {})
+                outside = self.judge.violations(role, [a for a, _ in passed], ecology, {})
                 passed = [(a, outcome) for a, outcome in passed if a.component not in outside]
             found.append([EligibleComponent(a.profile, outcome.allows, _NOTHING) for a, outcome in passed])
         if not self.free:
@@ -287,7 +282,7 @@ class Partitioner:
                 stated[parameter] |= values
         for number, (parameter, passed) in by_value.items():
             role = self.roles[number]
-            stated[parameter] |= self.values_of(
+            stated[parameter] |= self.judge.values_of(
                 parameter, role, [a for a, _ in passed] if role.local else ecology.values()
             )
         suitable = {parameter: self.suitable.of(parameter, frozenset(values)) for parameter, values in stated.items()}
@@ -311,46 +306,11 @@ class Partitioner:
             for n, (role, some, one) in enumerate(rows)
             if lists_components(role.tests)
             or in_doubt(role.tests)
-            or (not role.complete and self.mentioned(role))  # pySHACL alone can tell what to state for it
+            or (not role.complete and self.judge.mentioned(role))  # pySHACL alone can tell what to state for it
             or not passable(role.tests, self.hierarchy)
             or contradictory(some, one)
         )
         return found if self.free else (), unaddable
-
-    def mentioned(self, role: CompiledRole) -> IRI | None:
-        """The free parameter that the shape of a role mentions where pySHACL judges it, if it does."""
-        parameters = mentions(left_to_judge(self.document, role), role.iri, self.free)
-        if len(parameters) > 1:
-            names = " and ".join(sorted(self._parameters[parameter].name for parameter in parameters))
-            raise TemplateError(
-                f"the role {role.iri!r} mentions the free parameters {names} in one shape that is judged by pySHACL; "
-                "bind all but one of them",
-                file=self.document.source,
-            )
-        return next(iter(parameters), None)
-
-    def values_of(self, parameter: IRI, role: CompiledRole, shown: Collection[Advertisement]) -> set[Term]:
-        """The values of a free parameter that may make a difference where pySHACL judges a role: listed, or seen."""
-        asked = left_to_judge(self.document, role)
-        seen = free_values.seen(asked, role.iri, self.judge.visible(shown))
-        return seen | free_values.enumerated(self.document, parameter)
-
-    def judged_by_value(
-        self,
-        role: CompiledRole,
-        parameter: IRI,
-        values: Iterable[Term],
-        focus: Sequence[Advertisement],
-        ecology: AdvertisementIndex,
-    ) -> Iterator[tuple[Term, dict[IRI, Violations]]]:
-        """What pySHACL finds wrong with some components for each value of the free parameter that a role mentions.
-
-        First for any other value than these, unless the parameter lists its values.
-        """
-        subjects = self.judge.subjects(role, focus, ecology)
-        others = () if free_values.enumerated(self.document, parameter) else (another_value(parameter),)
-        for value in (*others, *values):
-            yield value, self.violations(role, focus, ecology, {parameter: value}, subjects)
 
     def _eligible_by_value(
         self,
@@ -363,7 +323,7 @@ class Partitioner:
         """The components that are eligible by a shape that mentions a free parameter where only pySHACL can tell."""
         survivors = [advertisement for advertisement, _ in passed]
         allowed: dict[IRI, set[Term]] = {a.component: set() for a in survivors}
-        for value, outside in self.judged_by_value(role, parameter, sorted(values, key=sort_key), survivors, ecology):
+        for value, outside in self.judge.by_value(role, parameter, sorted(values, key=sort_key), survivors, ecology):
             for component in allowed.keys() - outside.keys():
                 allowed[component].add(value)
         another = another_value(parameter)
@@ -374,20 +334,6 @@ class Partitioner:
                 yield EligibleComponent(advertisement.profile, {**others_allowed, parameter: found}, _NOTHING)
             else:
                 yield EligibleComponent(advertisement.profile, others_allowed, {parameter: values - found})
-
-    def violations(
-        self,
-        role: CompiledRole,
-        focus: Sequence[Advertisement],
-        ecology: AdvertisementIndex,
-        values: Values,
-        subjects: rdflib.Graph | None = None,
-    ) -> dict[IRI, Violations]:
-        """What pySHACL finds wrong with some components of an ecology; what cannot be judged is noted."""
-        found = self.judge.violations(role, focus, ecology, values, subjects)
-        for component, violations in found.items():
-            self.not_judged.update((component, one) for one in violations if isinstance(one, NotJudged))
-        return found
 
     def _variables(self, eligible: list[list[EligibleComponent]]) -> Iterator[Variable]:
         for parameter in sorted(self.free):

@@ -14,7 +14,8 @@ from selfconf.model.term import IRI, BlankNode, Literal, Term
 from selfconf.rdf import rdflib_terms
 from selfconf.rdf.advertisements import reader as advertisements
 from selfconf.rdf.eligibility.free_values import Suitable
-from selfconf.rdf.eligibility.partitioner import Partitioner, another_value
+from selfconf.rdf.eligibility.judgements import another_value
+from selfconf.rdf.eligibility.partitioner import Partitioner
 from selfconf.rdf.tasks import bindings, parameters, templates
 from selfconf.rdf.tasks.templates import TaskDocument
 from selfconf.rdf.turtle import document as turtle

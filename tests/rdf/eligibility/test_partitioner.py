@@ -418,9 +418,9 @@ def test_a_parameter_is_tried_value_by_value_only_where_pyshacl_judges_it(
     assert not role.complete
     if parameters is None:
         with pytest.raises(TemplateError, match="mentions the free parameters p and q"):
-            found.mentioned(role)
+            found.judge.mentioned(role)
     else:
-        assert found.mentioned(role) == next(map(iri, parameters), None)
+        assert found.judge.mentioned(role) == next(map(iri, parameters), None)
 
 
 @pytest.mark.parametrize("path", [":p", "[ sh:alternativePath ( :p :q ) ]"], ids=["compiled", "judged by pySHACL"])
