@@ -18,7 +18,8 @@ class LivingTask:
     beginning: float
     """When it began, in seconds of the Unix epoch."""
     phase: str
-    template: IRI
+    template: IRI | None
+    """None: the record that the sites keep of it does not say."""
     configurator: str
     """The name of the configurator that runs it; empty if no site has begun to."""
     detached: bool
@@ -57,7 +58,7 @@ class LivingTask:
             record.priority,
             record.beginning,
             "kept",
-            IRI.unchecked(record.wanted),
+            IRI.unchecked(record.wanted) if record.wanted else None,
             "",
             detached=True,
         )

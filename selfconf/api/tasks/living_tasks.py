@@ -83,11 +83,15 @@ class LivingTasks:
         return _newest(self._bus.ask(self._keys.kept_tasks()))
 
     def all(self, running: RunningTasks) -> tuple[LivingTask, ...]:
-        """The tasks that run, as `running` has found them, and those that live in the sites, sorted by name."""
+        """The tasks that run, as `running` has found them, and those that live in the sites, sorted by name.
+
+        While one site takes over from another, both may say that they run a task: the later phase counts.
+        """
         records = {record.task: record for record in self._records()}  # one that has ended may still be coming to rest
-        found = [LivingTask.of(status, status.task in records) for status in running.statuses]
-        known = {status.task for status in running.statuses}
-        found += [LivingTask.kept(one) for task, one in records.items() if not (one.ended or task in known)]
+        by_beginning = sorted(running.statuses, key=lambda status: status.since)
+        runs = {status.task or status.configurator: status for status in by_beginning}
+        found = [LivingTask.of(status, status.task in records) for status in runs.values()]
+        found += [LivingTask.kept(one) for task, one in records.items() if not (one.ended or task in runs)]
         return tuple(sorted(found, key=lambda task: (task.name, task.beginning)))
 
     def claim(self, wanted: str, numbered: bool = False) -> ClaimedName:

@@ -39,6 +39,7 @@ class Tasks:
         outside: IRI | None = None,
         phase: str = "running",
         beginning: float = 0.0,
+        since: float = 1.5,
         owed: tuple[IRI, ...] = (),
     ) -> MemoryBus:
         """A configurator that runs a task, perhaps the inside of a composite, until it is stopped.
@@ -49,7 +50,7 @@ class Tasks:
         node.announce(KEYS.configurator_life(name, "1"))
         last_words = node.publisher(KEYS.notices(name), Urgency.EVENT)
         speaker = speaks_of or name
-        status = Status(speaker, phase, TEMPLATE, 3, 1.5, components=components, task=task, outside=outside)
+        status = Status(speaker, phase, TEMPLATE, 3, since, components=components, task=task, outside=outside)
         status = replace(status, beginning=beginning)
 
         def answer(request: Request) -> None:

@@ -30,6 +30,19 @@ def test_tasks_that_run_and_tasks_that_are_kept_are_listed_once_each(tasks: Task
     assert [task.lives_in for task in found] == ["sites", "sites", "command"]
 
 
+def test_a_task_that_one_site_takes_over_from_another_is_listed_once_as_that_has_it(tasks: Tasks) -> None:
+    tasks.configurator("c1", PATROL.task, phase="reserving", since=3.0)
+    tasks.configurator("c2", PATROL.task, phase="refused", since=2.0)
+    tasks.site(PATROL)
+    assert [(task.name, task.configurator) for task in tasks.asked.all(tasks.asked.running())] == [("patrol", "c1")]
+
+
+def test_a_task_of_which_the_record_names_no_template_is_listed_without_one(tasks: Tasks) -> None:
+    tasks.site(replace(TIDY, wanted=""))
+    (found,) = tasks.asked.all(tasks.asked.running())
+    assert (found.template, found.body()["template"]) == (None, None)
+
+
 def test_of_several_records_of_a_task_the_newest_counts_and_its_end_is_final(tasks: Tasks) -> None:
     tasks.site(replace(PATROL, revision=2, priority=7), replace(TIDY, revision=2, ended=True))
     tasks.site(PATROL, replace(TIDY, revision=9))
