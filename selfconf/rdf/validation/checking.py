@@ -22,13 +22,14 @@ from selfconf.errors import TurtleError
 from selfconf.model.diagnostic import Diagnostic, Report, Severity, report
 from selfconf.model.immutable import immutable, replace
 from selfconf.rdf import turtle
-from selfconf.rdf.validation.prefilter import Prefiltered, prefilter
-from selfconf.rdf.validation.syntax import telling
+from selfconf.rdf.validation.prefilter import Prefiltered, SyntaxProblem, prefilter
 from selfconf.rdf.validation.term_index import TermIndex, index_of
 from selfconf.rdf.validation.text_places import TextPlaces
 from selfconf.rdf.validation.undeclared_signals import undeclared_signals
 
 _NOTHING = "There is no component, template, task, configuration or ontology in this file: nothing to validate."
+_TO_THE_END = "Line jumps are not allowed"
+"""What the parser says of a string without an end, behind which nothing is what it seems."""
 MOST_STATEMENTS = 250_000
 """Statements of a file that is checked for the place of each problem, which takes a thousand times as long as reading:
 a bound on the work that is known before, and is the same on every machine."""
@@ -234,9 +235,25 @@ def _syntax(source: SourceText, screened: Prefiltered) -> Iterator[Diagnostic]:
     if not screened.problems and not screened.too_large:
         return
     text = TextPlaces(source.name, source.octets)
-    for problem in telling(screened.problems):
+    for problem in _not_of_another(screened.problems):
         message = f"This is not Turtle: {problem.message.rstrip('.')}."
         yield text.on(problem.line, problem.column, "SC-S01", message, turtle.advice(problem.message), problem.width)
     if screened.too_large:
         message = "A string or an IRI here has over 16 MiB, which is more than can be read."
         yield text.at(text.largest_token(), "SC-S05", message)
+
+
+def _not_of_another(problems: Sequence[SyntaxProblem]) -> Iterator[SyntaxProblem]:
+    """The problems, among some, that do not come of another: one for each prefix, and else the first of each line."""
+    said: set[str] = set()
+    lines: set[int] = set()
+    for problem in problems:
+        prefix = turtle.undeclared_prefix(problem.message) is not None
+        if problem.message in said if prefix else problem.line in lines:
+            continue  # one missing declaration is one mistake, however often the prefix is used
+        said.add(problem.message)
+        yield problem
+        if not prefix:
+            lines.add(problem.line)
+        if problem.message.startswith(_TO_THE_END):
+            return
