@@ -1,4 +1,4 @@
-"""Templates and tasks: from triples to the roles, interactions, parameters and costs of a task.
+"""Templates and tasks: from triples to the roles, interactions, parameters, costs and ports of a task.
 
 What makes a template readable is checked here, with one sentence per mistake; the authority is `shapes/template.ttl`,
 and a test holds the two together: no wrong template or task is read, whatever else the file has.
@@ -14,19 +14,20 @@ from selfconf.errors import TemplateError
 from selfconf.model.cost import CostLevel, CostTerm
 from selfconf.model.immutable import immutable
 from selfconf.model.literal_values import fraction, integer
+from selfconf.model.profile import Condition, Input, Output, needed_operation, offered_operation
 from selfconf.model.setting_names import setting
-from selfconf.model.template import MOST_PRIORITY, Task, Template
+from selfconf.model.template import MOST_PRIORITY, Role, Task, Template, TemplatePort
 from selfconf.model.term import IRI, Literal, Term
 from selfconf.model.wording import in_full
-from selfconf.rdf.permitted_fields import SAID_BY
+from selfconf.rdf.permitted_fields import NAME_TEXT, NAMED_OR_TEXT, SAID_BY
 from selfconf.rdf.tasks.interactions import interactions_of
 from selfconf.rdf.tasks.mistakes import DocumentReader, misplaced, worded
 from selfconf.rdf.tasks.parameters import misfits, parameters_of
-from selfconf.rdf.tasks.ports import PORT_LINKS, template_ports
 from selfconf.rdf.tasks.roles import roles_of
 from selfconf.rdf.turtle import Document, ListFault, Node
 from selfconf.rdf.vocabulary import FIRST, LABEL, SC, TYPE
 
+_PORT_LINKS = (SC.hasInput, SC.needsOperation, SC.hasOutput, SC.hasOperation)
 _SAID_OF = {
     SC[name]: SAID_BY[SC[name]] for name in ("feeds", "sets", "minCount", "maxCount", "recruits", "cost", "priority")
 }
@@ -149,7 +150,7 @@ class _Reader(DocumentReader):
             label=self._label(template),
             cost=cost_of(self.document, template, frozenset(role.iri for role in roles)),
             priority=self._priority(template) or 0,
-            ports=template_ports(self.document, template, roles),
+            ports=_template_ports(self.document, template, roles),
         )
 
     def _priority(self, subject: Node) -> int | None:
@@ -198,7 +199,7 @@ class _Reader(DocumentReader):
     def _without_parameters(self, template: IRI) -> None:
         """Raises where a parameter stands for something that is the same for all tasks."""
         parameters = frozenset[Term](self.document.instances(SC.Parameter))
-        ports = frozenset(port for link in PORT_LINKS for port in self.document.values(template, link))
+        ports = frozenset(port for link in _PORT_LINKS for port in self.document.values(template, link))
         for subject, predicate, value in self.document.triples() if parameters else ():
             fixed = predicate in _FIXED or (predicate in _FIXED_OF_PORTS and subject in ports)
             if fixed and value in parameters:
@@ -249,3 +250,61 @@ class _CostReader(DocumentReader):
             problem = f"sc:{predicate.short} of a term of sc:cost is one finite number"
             raise self.mistake(problem, term, predicate, values[-1])
         return found
+
+
+def _template_ports(document: Document, template: IRI, roles: tuple[Role, ...]) -> tuple[TemplatePort, ...]:
+    """The ports of a template with some roles, inputs and needed operations first, by name. Raises TemplateError."""
+    found = [*_PortReader(document).ports(template, frozenset(role.iri for role in roles))]
+    return tuple(sorted(found, key=lambda port: (not port.is_input, port.name)))
+
+
+class _PortReader(DocumentReader):
+    """Reads the ports of a template; every method raises TemplateError with a sentence for the author."""
+
+    def ports(self, template: IRI, roles: frozenset[IRI]) -> Iterator[TemplatePort]:
+        for link in _PORT_LINKS:
+            names: set[str] = set()
+            for node in self.document.values(template, link):
+                what = f"a sc:{link.short} of the template {worded(template)}"
+                name = self.only(node, SC.name, f"{what} has exactly one sc:name, a string")
+                if not isinstance(name, Literal) or not NAME_TEXT.allows(name):
+                    problem = f"{what} has exactly one sc:name, {NAME_TEXT.words}"
+                    raise self.mistake(problem, node, SC.name, name)
+                if name.lexical in names:
+                    problem = f"{what} is called {name.lexical!r}, and another one as well"
+                    raise self.mistake(problem, node, SC.name, name)
+                names.add(name.lexical)
+                role = self.only(node, SC.of, f"{what} is that of exactly one role, sc:of")
+                if role not in roles or not isinstance(role, IRI):
+                    problem = f"{what} is that of {worded(role)}, which is no role of the template"
+                    raise self.mistake(problem, node, SC.of, role)
+                yield TemplatePort(role, self._port(link, node, name.lexical, what))
+
+    def _port(self, link: IRI, node: Term, name: str, what: str) -> Input | Output:
+        """A port as a component has it that is a task of the template."""
+        if link in (SC.hasOperation, SC.needsOperation):
+            operation = offered_operation if link == SC.hasOperation else needed_operation
+            return operation(
+                name, self._at_most_one(SC.request, node, what), self._at_most_one(SC.response, node, what)
+            )
+        signals = self.document.values(node, SC.signalType)
+        if not signals or not all(isinstance(one, IRI) for one in signals):
+            raise self.mistake(f"{what} has signal types, which are IRIs", node, SC.signalType, *signals)
+        types = tuple(sorted(one for one in signals if isinstance(one, IRI)))
+        unit, frame = self._at_most_one(SC.unit, node, what), self._frame(node, what)
+        if link == SC.hasOutput:
+            return Output(name, types, unit=unit, frame=frame)
+        return Input(name, types, condition=Condition(unit, frame) if unit or frame else None)
+
+    def _at_most_one(self, predicate: IRI, node: Term, what: str) -> IRI | None:
+        """The value of a property that a port need not have; an IRI."""
+        if not self.document.values(node, predicate):
+            return None
+        return self.iri(node, predicate, f"{what} has at most one sc:{predicate.short}, an IRI")
+
+    def _frame(self, node: Term, what: str) -> Term | None:
+        """The frame that a port refers to, if it says one."""
+        frames = self.document.values(node, SC.frame)
+        if len(frames) > 1 or not all(map(NAMED_OR_TEXT.allows, frames)):
+            raise self.mistake(f"{what} has at most one sc:frame, {NAMED_OR_TEXT.words}", node, SC.frame, *frames[-1:])
+        return frames[0] if frames else None
