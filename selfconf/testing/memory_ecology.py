@@ -39,7 +39,7 @@ ECOLOGY_NAME = "memory"
 UNTIL_SECONDS = 60.0
 """Simulated seconds for which `until` waits, unless told otherwise."""
 REPORT_LAG = 0.1
-"""Simulated seconds that events and releases may come after what they are about."""
+"""Simulated seconds that observers and releases may come after what they are about."""
 Kind = TypeVar("Kind", bound=Component)
 
 
@@ -79,8 +79,8 @@ class MemoryRun:
         self, ecology: MemoryEcology, task: TaskSpecification, method: Method, options: TaskOptions, wait: bool
     ) -> None:
         self._ecology, self._task, self._texts = ecology, task.document, task.texts
-        self.events: list[AnsweredEvent] = []
-        """What has happened, in order; the same values as those of `Run.events`."""
+        self._events: list[AnsweredEvent] = []
+        """What was reported so far: the runner reports a moment after an event, unless it is asked to."""
         self.refusal: Refusal | Undecided | None = None
         """Why the task has ended, where there is no configuration, explained as that of a `Run` is."""
         self.ended = False
@@ -100,6 +100,12 @@ class MemoryRun:
         network, node = ecology.network, ecology._another_node()
         self._runner = TaskRunner(node, ECOLOGY_NAME, request, f"c{len(network.nodes)}", lambda: network.time)
         self._runner.start()
+
+    @property
+    def events(self) -> list[AnsweredEvent]:
+        """What has happened up to now, in order; the same values as those of `Run.events`."""
+        self._runner.reports.tell()
+        return self._events
 
     @property
     def phase(self) -> str:
@@ -152,7 +158,7 @@ class MemoryRun:
     def _report(self, event: AnyRunEvent) -> None:
         if isinstance(event, TaskWaiting | TaskRefused) and isinstance(event.refusal, Refusal):
             event = replace(event, refusal=self._explain(event.refusal))
-        self.events.append(answered_event(event, self._task))
+        self._events.append(answered_event(event, self._task))
 
     def _ended(self, refusal: Refusal | Undecided | None) -> None:
         self.refusal, self.ended = self._explain(refusal) if isinstance(refusal, Refusal) else refusal, True

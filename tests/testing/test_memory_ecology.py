@@ -66,6 +66,17 @@ def test_a_task_runs_and_goes_on_when_a_component_crashes() -> None:
     assert not screen.active
 
 
+def test_what_has_happened_is_told_at_once() -> None:
+    ecology = MemoryEcology()
+    first = ecology.add(Clock("first"), CLOCK.replace("NAME", "a"))
+    ecology.add(Clock("second"), CLOCK.replace("NAME", "b"))
+    ecology.add(Screen(), SCREEN)
+    run = ecology.run(sc.template(TASK)).started()
+    ecology.crash(first)
+    assert ecology.until(lambda: run.running and run.configuration["source"] == ("urn:test:b",))
+    assert [event.act for event in run.events if event.act in ("lost", "running")] == ["running", "lost", "running"]
+
+
 def test_of_two_lives_of_a_component_the_one_that_acts_can_be_ended() -> None:
     ecology = MemoryEcology()
     first, second = (ecology.add(Clock(name), CLOCK.replace("NAME", "a")) for name in ("first", "second"))
