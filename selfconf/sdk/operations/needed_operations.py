@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from numbers import Real
 from typing import Any
 
 from selfconf.bus.port import Replies
@@ -70,7 +71,7 @@ class NeededOperations:
         who = self._profile.component.short
         if name not in self._needed:
             raise ProgrammerError(f"{who} advertises no need of an operation {name!r}")
-        if not seconds > 0.0:
+        if not isinstance(seconds, Real) or not seconds > 0.0:
             raise ProgrammerError(f"`call` waits for more than zero seconds, not {seconds!r}")
         if not callable(answered):
             raise ProgrammerError(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from numbers import Real
 
 from selfconf.bus.port import Bus, Undo
 from selfconf.errors import ProgrammerError
@@ -23,7 +24,7 @@ class ComponentTimers:
         May be called from any thread. Raises ProgrammerError for an interval that is none, and for an action
         that cannot be called.
         """
-        if not 0.0 < seconds < math.inf:
+        if not isinstance(seconds, Real) or not 0.0 < seconds < math.inf:
             raise ProgrammerError(f"`every` takes an interval of more than zero seconds, not {seconds!r}")
         if not callable(action):
             raise ProgrammerError(f"`every` takes a function to call, such as self.measure, not {action!r}")

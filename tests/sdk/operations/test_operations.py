@@ -175,7 +175,7 @@ def test_what_cannot_be_called_or_sent_is_a_mistake_of_the_program() -> None:
         room.album.ask(float("nan"))
     with pytest.raises(ProgrammerError, match=f"it has {MOST_PAYLOAD + 1} bytes, and {MOST_PAYLOAD} are allowed"):
         room.album.ask(bytes(MOST_PAYLOAD + 1))
-    for seconds in (-0.01, 0.0, math.nan):  # such as the rest of a time that is over
+    for seconds in (-0.01, 0.0, math.nan, "2", None):  # such as the rest of a time that is over
         with pytest.raises(ProgrammerError, match="`call` waits for more than zero seconds, not "):
             room.album.ask(seconds=seconds)
     with pytest.raises(ProgrammerError, match="`answered` is a function that takes the answer"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import pytest
 
@@ -50,8 +51,8 @@ def test_a_timer_that_has_ticked_for_a_long_time_is_kept_once() -> None:
     assert not stage.runtime._timers.running
 
 
-@pytest.mark.parametrize("seconds", [0, -1.0, math.nan, math.inf])
-def test_an_interval_that_is_none_is_refused(seconds: float) -> None:
+@pytest.mark.parametrize("seconds", [0, -1.0, math.nan, math.inf, "1", None])
+def test_an_interval_that_is_none_is_refused(seconds: Any) -> None:
     stage = Stage()
     stage.call(apply(1, US))
     with pytest.raises(ProgrammerError, match="more than zero seconds"):
