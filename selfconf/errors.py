@@ -109,6 +109,13 @@ class PeerError(SelfconfError):
     """Another process of the ecology said something that the protocol does not allow."""
 
 
+class SiteEndingError(PeerError):
+    """A site starts nothing any more: it is ending, and so are its processes."""
+
+    def __init__(self) -> None:
+        super().__init__("this site is ending")
+
+
 class NetworkError(SelfconfError):
     """The ecology cannot be reached: no site answers, an endpoint is taken, the session was lost."""
 

@@ -27,7 +27,7 @@ from pathlib import Path
 
 from selfconf.bus.port import Bus, Urgency
 from selfconf.bus.timer import Timer
-from selfconf.errors import AuthorError, PeerError, reason
+from selfconf.errors import AuthorError, PeerError, SiteEndingError, reason
 from selfconf.model.log_line import BETWEEN_COMPONENTS
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI
@@ -238,7 +238,7 @@ class ComponentProgram:
             words = shlex.split(self.command) or [""]
             with self._launching:
                 if self._closed:
-                    raise PeerError("this site is ending")
+                    raise SiteEndingError
                 printed = self._printed()
                 group = ProcessGroup(words, self._folder, environment)
                 process = self._process = ComponentProcess(self._bus, self._keys, group, life)

@@ -14,7 +14,7 @@ from itertools import groupby
 from pathlib import Path
 
 from selfconf.bus.port import Bus
-from selfconf.errors import PeerError
+from selfconf.errors import PeerError, SiteEndingError
 from selfconf.model.immutable import immutable
 from selfconf.model.profile import Profile
 from selfconf.model.term import IRI
@@ -71,7 +71,7 @@ class ComponentProcesses:
         if started is None or environment is None:
             raise cannot_start(component)
         if self._closed:
-            raise PeerError("this site is ending")
+            raise SiteEndingError
         last = program = self.by_component.get(component)
         if program is None or not program.running:  # the command of one that runs may have changed since
             program = self._programs.get(started)

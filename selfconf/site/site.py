@@ -9,12 +9,13 @@ from __future__ import annotations
 import logging
 import secrets
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from functools import partial
 from typing import NamedTuple
 
 from selfconf.bus.answers import answering, own_answers
 from selfconf.bus.port import Bus, Replies, Request, Urgency
-from selfconf.errors import PeerError
+from selfconf.errors import PeerError, SiteEndingError
 from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
 from selfconf.model.wording import sayable
@@ -262,7 +263,8 @@ class Site:
             request.reply(self.keys.log(self.name), encode(part))
 
     def _wake(self, request: Request) -> None:
-        with answering(request):
+        """Start a component; while the site ends say nothing, as one that has ended: perhaps it begins anew."""
+        with answering(request), suppress(SiteEndingError):
             wake = decode(request.payload, Wake)
             self.start(wake.component, wake.after)
             request.reply(self.keys.wake(self.name), b"started")

@@ -17,7 +17,7 @@ from selfconf.bus.memory import Network
 from selfconf.bus.port import Replies
 from selfconf.errors import PeerError
 from selfconf.protocol.codec import encode
-from selfconf.protocol.messages import End
+from selfconf.protocol.messages import End, Wake
 from selfconf.site import Site, component_program, restart_limit
 from selfconf.site.process_group import ProcessGroup
 from selfconf.termination import alive
@@ -223,3 +223,14 @@ def test_a_process_that_is_being_started_as_the_site_closes_has_ended_with_it(
     group = program(made).group
     assert group is not None
     assert group.code() is not None
+
+
+def test_a_site_that_is_ending_replies_nothing_to_what_asks_it_to_start_a_component(
+    network: Network, site: Callable[..., Site]
+) -> None:
+    """As one that has ended: a task that was told that it cannot start it would not wait for a site that is back."""
+    site(python("import time; time.sleep(60)")).processes.close()
+    heard: list[Replies] = []
+    network.node().ask(KEYS.wake("home"), encode(Wake(SLEEPER)), 5.0, heard.append)
+    network.run(lambda: bool(heard))
+    assert heard == [Replies()]
