@@ -2,7 +2,7 @@
 
     python examples/wot/thing.py lamp desk --port 8081
 
-It describes itself at `/`. A lamp is switched by whoever writes its property `on`; a switch by hand, which is a POST to
+It describes itself at `/`. A lamp is switched by a write to its property `on`; a switch by hand, which is a POST to
 `/press`, and tells each change to those who observe it.
 """
 
