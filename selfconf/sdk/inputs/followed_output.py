@@ -114,7 +114,9 @@ class FollowedOutput:
             stamp = self._stamp_of(sample)
             if stamp is not None:
                 self.order.said_again = SignalNumber(stamp.life, stamp.sequence)
-            if not self._queue or (self.muted and stamp is not None and not self._has_come(stamp)):
+            if stamp is not None and self.order.is_old(stamp, self.lost):
+                self.heard_at = self._now()  # but it takes no room: a new signal would be driven out for it
+            elif not self._queue or (self.muted and stamp is not None and not self._has_come(stamp)):
                 self.receive(sample)
 
     def pop(self) -> Sample | None:

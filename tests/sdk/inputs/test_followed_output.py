@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from selfconf.bus.memory import Network
-from selfconf.bus.port import Sample, Urgency
+from selfconf.bus.port import Replies, Sample, Urgency
 from selfconf.model.profile import Input, Ports
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
@@ -121,6 +121,15 @@ class Heard:
     def receive(self, sequence: int, life: str = "l") -> None:
         """A signal comes."""
         self.output.receive(Sample("", b"%d" % sequence, encode(Stamp(TRACKER, life, sequence, 0.0))))
+
+
+@pytest.mark.parametrize("lost", [False, True])
+def test_a_last_signal_that_was_delivered_takes_no_room_unless_the_output_was_lost(lost: bool) -> None:
+    heard = Heard()
+    heard.output.muted, heard.output.order.newest, heard.output.lost = False, Stamp(TRACKER, "l", 2, 0.0), lost
+    heard.now = 6.0
+    heard.output.receive_again(Replies((Sample("", b"2", encode(Stamp(TRACKER, "l", 2, 0.0))),)))
+    assert (heard.waits, heard.output.heard_at) == (int(lost), 6.0)
 
 
 def test_of_what_comes_while_it_is_muted_the_newest_is_delivered_if_it_has_only_just_come() -> None:
