@@ -36,6 +36,7 @@ from selfconf.errors import PeerError, SelfconfError
 from selfconf.files import FileStamp, stamp
 from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI
+from selfconf.model.wording import listed
 from selfconf.protocol.codec import decode, encode
 from selfconf.protocol.keys import Keys
 from selfconf.protocol.messages import Introduction
@@ -259,7 +260,7 @@ class Doorkeeper:
         away = self._others.away()
         disputed = {one: sites for one, sites in disputed.items() if one in decided or len({*sites} - away) > 1}
         for component in sorted(disputed.keys() - self._disputed):
-            sites = f"site{'s' * (len(disputed[component]) > 1)} {' and '.join(disputed[component])}"
+            sites = f"site{'s' * (len(disputed[component]) > 1)} {listed(disputed[component])}"
             other = f", and believed to be that of {decided[component]}" if component in decided else ""
             self._complain(
                 f"{component} is advertised by the {sites}{other}; it belongs to none until you say to which: selfconf"

@@ -21,6 +21,7 @@ from selfconf.discovery.found import Discovery, FoundAdvertisement, KnownSite, S
 from selfconf.errors import PeerError, SelfconfError, TurtleError
 from selfconf.model.immutable import replace
 from selfconf.model.term import IRI
+from selfconf.model.wording import listed
 from selfconf.protocol.codec import MOST_ADVERTISED, decode, encode
 from selfconf.protocol.keys import life_of, owner_of, site_of
 from selfconf.protocol.messages import Known, Page
@@ -217,7 +218,7 @@ class SiteInquiry:
             else:
                 del found[component]
                 said.append(
-                    f"left out {component}: it is disputed, for the sites {' and '.join(sites)} advertise it; say whose"
+                    f"left out {component}: it is disputed, for the sites {listed(sites)} advertise it; say whose"
                     f" it is: selfconf access --believe SITE {component}"
                 )
         found |= _also_elsewhere(found, disputed)

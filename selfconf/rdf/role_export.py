@@ -16,6 +16,7 @@ from selfconf.errors import AuthorError
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.setting_names import setting
 from selfconf.model.term import IRI, BlankNode, Literal, Term
+from selfconf.model.wording import listed
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import (
     ClassTest,
@@ -53,8 +54,10 @@ def shape(given: TaskDocument, role: CompiledRole, hierarchy: Hierarchy) -> str:
     """
     loose = mentions(given.document, role.iri, free_parameters(given.template, given.task.bindings))
     if loose:
-        names = " and ".join(sorted(p.name for p in given.template.parameters if p.iri in loose))
-        raise AuthorError(f"the role {role.iri!r} mentions the free parameter {names}; bind it to see the shape")
+        names = sorted(p.name for p in given.template.parameters if p.iri in loose)
+        parameters = f"the free parameter{'s' * (len(names) > 1)} {listed(names)}"
+        one = "it" if len(names) == 1 else "them"
+        raise AuthorError(f"the role {role.iri!r} mentions {parameters}; bind {one} to see the shape")
     triples = list(_reached(bound_shape(given.document, given.task.bindings), role.iri))
     for number, test in enumerate(test for test in role.tests if isinstance(test, ParameterTest)):
         triples += _parameter_shape(role.iri, test, hierarchy, number)

@@ -130,6 +130,16 @@ def test_a_free_parameter_has_no_shape_and_is_named() -> None:
         role_shape(read(IN_LIST))
 
 
+def test_several_free_parameters_are_all_named() -> None:
+    names = ("x", "y", "z")
+    asked = " , ".join(f"[ sh:path :p ; sh:in ( :{name} ) ]" for name in names)
+    parameters = " ".join(f":{name} a sc:Parameter ; sc:name '{name}' ." for name in names)
+    template = f":t a sc:Template ; sc:roles ( :r ) ; sc:parameter :x , :y , :z . :r a sc:Role ; sh:property {asked} ."
+    given = read_task(parse(f"{PREFIXES} {template} {parameters}", "t.ttl"))
+    with pytest.raises(AuthorError, match="mentions the free parameters x, y and z; bind them to see the shape"):
+        role_shape(given)
+
+
 def test_a_free_parameter_in_one_place_may_be_any_one_value_in_the_query() -> None:
     assert answers(role_query(read(IN_LIST))) == "abc"
 

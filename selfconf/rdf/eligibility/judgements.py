@@ -16,6 +16,7 @@ from selfconf.errors import TemplateError
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.obstacle import NotJudged, ShapeViolated
 from selfconf.model.term import IRI, Term
+from selfconf.model.wording import listed
 from selfconf.rdf.advertisements import Advertisement
 from selfconf.rdf.eligibility import free_values
 from selfconf.rdf.eligibility.advertisement_index import AdvertisementIndex
@@ -128,7 +129,7 @@ class ShapeJudge:
         """The free parameter that the shape of a role mentions where pySHACL judges it, if it does."""
         parameters = mentions(left_to_judge(self._document, role), role.iri, frozenset(self._free))
         if len(parameters) > 1:
-            names = " and ".join(sorted(self._free[parameter] for parameter in parameters))
+            names = listed(sorted(self._free[parameter] for parameter in parameters))
             raise TemplateError(
                 f"the role {role.iri!r} mentions the free parameters {names} in one shape that is judged by pySHACL; "
                 "bind all but one of them",
