@@ -49,7 +49,7 @@ FAILURE_SECONDS = 0.12
 SLOW_SECONDS = 1.0
 """Processor time that components may take in all beyond the share of each."""
 SHARE_SECONDS, MOST_SHARE_SECONDS = 0.004, 0.04
-"""Processor time that each component may take, as long as none conforms, and at most."""
+"""Processor time that each component may take, as long as none conforms, and at most if some do (see `_Shares`)."""
 LEAST_SECONDS = 0.03
 """Processor time for one more try; clocks of processor time go by milliseconds."""
 _SH = rdflib.Namespace("http://www.w3.org/ns/shacl#")
@@ -97,8 +97,8 @@ def violations(
     Conformance is that of SHACL, section 3.4: a result of any severity counts. So does a value that cannot be compared
     with another (4.3, 4.5.3). A node whose statements take too long to judge, or that pySHACL cannot judge, is
     `NotJudged`; the others do not suffer from it. `sizes` bounds how many values a node has of one property, which is
-    counted where it is not given. Raises TemplateError, blaming `source`
-    and the shape as it is `called`, where the shape itself is not well-formed.
+    counted where it is not given. Raises TemplateError, blaming `source` and the shape as it is `called`, where the
+    shape itself is not well-formed.
     """
     if not focus:
         return {}
