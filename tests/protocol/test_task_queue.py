@@ -16,7 +16,7 @@ from selfconf.protocol.activation import (
     withdraw,
 )
 from selfconf.protocol.messages import Apply, Release, Reserve, Verdict
-from selfconf.protocol.task_queue import MOST_WAITING
+from selfconf.protocol.task_queue import MOST_WAITING, TaskQueue
 from tests.protocol.activations import (
     ACTIVE,
     IDLE,
@@ -193,3 +193,11 @@ def test_a_component_is_kept_for_no_task_once_another_that_ranks_before_it_has_i
     held, verdict, _ = obey(offered, call_of(Reserve, C, priority=1))
     assert (verdict, held.queue.kept_for) == (Verdict.DONE, "")
     assert withdraw(held, B).queue.lapsed == frozenset(), "it has not been slow to come"
+
+
+def test_the_component_is_kept_no_longer_for_a_task_that_leaves_and_comes_again() -> None:
+    call = call_of(Reserve, B)
+    kept, claim = TaskQueue().joined(call).offered()
+    assert kept.kept is claim is call
+    assert kept.left(B).joined(call).kept is None
+    assert kept.left(C).kept is call
