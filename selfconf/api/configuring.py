@@ -53,6 +53,7 @@ class Inquiry:
         partitioner = self.composer.partitioner
         wider = (method.wider() if ecology.remote else None) or partitioner.hierarchy
         self.ecology, not_read = ecology.for_task(partitioner, wider)
+        self._missing_sites = ecology.missing_sites
         priority = self.task.document.task.priority
         held = {c: holder for c, holder in ecology.holders().items() if holder.priority >= priority}
         self._sharers = {c: held[c] for c in held if c in self.ecology and self.ecology[c].profile.is_shareable}
@@ -186,7 +187,12 @@ class Inquiry:
         if isinstance(found, Refusal):
             free = {c: one for c, one in self.ecology.items() if c not in self.holders}
             usable = self.composer.usable(self.holders.keys(), found)
-            found = replace(found.told_of_held(usable), held=self._held(usable, limit), left_out=self.left_out)
+            found = replace(
+                found.told_of_held(usable),
+                held=self._held(usable, limit),
+                missing_sites=self._missing_sites,
+                left_out=self.left_out,
+            )
             able = free if self.holders else self.ecology
             return refusal_with_places(self.composer, able, found, self.method, limit, texts=self._texts)
         optimum = found if isinstance(found, Optimum) else None

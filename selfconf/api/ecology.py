@@ -133,6 +133,11 @@ class Ecology(ABC):
         """What else was left out of the answers of a living ecology, a sentence each."""
         return self._complaints
 
+    @property
+    def missing_sites(self) -> tuple[str, ...]:
+        """The sites of a living ecology that did not answer the last discovery in full, sorted."""
+        return ()
+
     def close(self) -> None:
         """Leave the ecology, where that means something."""
         return

@@ -196,7 +196,7 @@ def _repairs(refusal: Refusal) -> Iterator[str]:
 def _missing(sites: Sequence[str]) -> list[str]:
     """The sites that may have what is lacking."""
     more = [f"and {len(sites) - MOST_LINES} other sites did not either"] if len(sites) > MOST_LINES else []
-    return [*(f"the site {site} lives and did not answer in full" for site in sites[:MOST_LINES]), *more]
+    return [*(f"the site {site} did not answer in full" for site in sites[:MOST_LINES]), *more]
 
 
 def holder_text(holder: Holder) -> str:

@@ -137,7 +137,7 @@ def test_a_refusal_has_every_reason_near_miss_and_repair_with_its_place() -> Non
     assert [line.split("  [")[0].strip() for line in lines[mended + 1 : -2]] == [str(repair) for repair in REPAIRS]
     assert lines[-2:] == [
         "  with --reasoning subclass there is a configuration",
-        "the site cellar lives and did not answer in full",
+        "the site cellar did not answer in full",
     ]
 
 

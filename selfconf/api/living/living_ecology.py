@@ -132,6 +132,11 @@ class LivingEcology(Ecology):
         """All advertisements by component, as they are now."""
         return {component: found.advertisement for component, found in self.discover().found.items()}
 
+    @property
+    def missing_sites(self) -> tuple[str, ...]:
+        """The sites that did not answer the last discovery in full, or are suspended on this machine; sorted."""
+        return self.discovery.missing
+
     def holders(self) -> Mapping[IRI, Holder]:
         """The tasks that hold components, by component: of several that share one, the first in rank.
 

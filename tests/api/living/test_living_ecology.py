@@ -265,6 +265,18 @@ def test_a_run_of_this_machine_that_is_suspended_is_told_by_its_task_apart_from_
     assert living.all_tasks() == living.suspended == ()
 
 
+def test_a_refusal_names_the_sites_that_did_not_answer(
+    living: LivingEcology, house: Home, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SELFCONF_RUNTIME_DIR", str(house.runtime))
+    task = template(NAVIGATE).bind(robot=":Nobody", goal="(AT BEDROOM)")
+    with suspended_run(house.ecology, "patrol", house.endpoint()) as program:
+        this_machine.announce(LocalSite(house.ecology, "attic", house.endpoint(), program.pid))
+        refusal = living.configure(task)
+    assert isinstance(refusal, Refusal)
+    assert refusal.missing_sites == living.missing_sites == ("attic",)
+
+
 @pytest.mark.parametrize(
     ("configurator", "payload"),
     [("stranger", b"no Turtle"), ("*", b"<urn:a> a <https://w3id.org/selfconf#Configuration> .")],
