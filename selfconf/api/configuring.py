@@ -8,8 +8,8 @@ from contextlib import suppress
 
 from selfconf.api.answer import Answer, ExplainedRefusal
 from selfconf.api.arguments import Paths, checked_flag
-from selfconf.api.collector import collector_at_rest, collector_looking_at_new
 from selfconf.api.ecology import Ecology, LoadedEcology
+from selfconf.api.garbage_collection import collector_at_rest, collector_looking_at_new
 from selfconf.api.method import Method
 from selfconf.api.places import Places, with_lines
 from selfconf.api.reading import described_in

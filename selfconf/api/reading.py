@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias, TypeGuard
 
 from selfconf import files
-from selfconf.api.collector import collector_at_rest
 from selfconf.api.document_texts import DocumentText, is_graph, source_name, text_of, texts_of
 from selfconf.api.ecology import Ecology, EndpointEcology, LoadedEcology
+from selfconf.api.garbage_collection import collector_at_rest
 from selfconf.errors import AuthorError
 from selfconf.model.left_out import LeftOut
 from selfconf.model.profile import Place

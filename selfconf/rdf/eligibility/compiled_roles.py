@@ -13,8 +13,8 @@ from selfconf.errors import TemplateError
 from selfconf.model.hierarchy import NOTHING_ABOVE, Hierarchy
 from selfconf.model.immutable import replace
 from selfconf.model.term import IRI, BlankNode, Literal, Term
-from selfconf.rdf.eligibility.compiler import SILENT, TARGETS, ShapeCompiler
 from selfconf.rdf.eligibility.role_tests import CompiledRole, ParameterTest
+from selfconf.rdf.eligibility.shape_compiler import SILENT, TARGETS, ShapeCompiler
 from selfconf.rdf.permitted_fields import LISTS_OF_SHAPES
 from selfconf.rdf.shacl import component_parameters, shapes_behind
 from selfconf.rdf.tasks import ROLE_STRUCTURE, mentions, substituted

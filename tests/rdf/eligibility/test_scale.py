@@ -9,7 +9,7 @@ import pyoxigraph as ox
 import pytest
 
 from benchmarks.scale import worlds as scale
-from selfconf.api.collector import collector_at_rest
+from selfconf.api.garbage_collection import collector_at_rest
 from selfconf.model.hierarchy import Hierarchy
 from selfconf.model.profile import Profile
 from selfconf.rdf.advertisements import loader

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from selfconf.api.collector import (
+from selfconf.api.garbage_collection import (
     FROZEN_BY_PYTHON,
     MANY_COMPONENTS,
     MANY_VALUES,
