@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from selfconf.bus.growing_pause import GrowingPause
 from selfconf.bus.port import Bus, Undo, Urgency
 from selfconf.errors import SelfconfError
 
@@ -37,7 +38,7 @@ class HubReopening:
         self._warning = bus.publisher(reopens, Urgency.EVENT)
         self.is_near = False
         """Whether clients were warned, and it is opened anew in a moment."""
-        self._due, self._pause = math.inf, FIRST_RETRY
+        self._due, self._pause = math.inf, GrowingPause(FIRST_RETRY, RAREST_RETRY)
         """When it is opened anew next, and how long is waited where that fails."""
         self._undo: Undo = lambda: None
 
@@ -66,7 +67,7 @@ class HubReopening:
             self._open_anew()
         except SelfconfError as error:
             self._tell_fault(f"the hub cannot be opened with its new rules: {error}; trying again")
-            self._plan(self._pause, self._open)
-            self._pause = min(2 * self._pause, RAREST_RETRY)
+            self._plan(self._pause.seconds, self._open)
+            self._pause.tried()
         else:
-            self._pause = FIRST_RETRY
+            self._pause.begin_anew()

@@ -10,11 +10,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Set
 from functools import partial
 
+from selfconf.bus.growing_pause import GrowingPause
 from selfconf.bus.port import Bus
 from selfconf.bus.timer import Timer
 from selfconf.composites.inside_of_composite import InsideOfComposite
 from selfconf.composition import Inside
-from selfconf.deployment import Aside, GrowingPause, RunRequest
+from selfconf.deployment import Aside, RunRequest
 from selfconf.discovery import Beliefs
 from selfconf.model.configuration import Configuration
 from selfconf.model.immutable import replace

@@ -4,9 +4,8 @@ A `RunRequest` says which task to run, by which `ComposeFunction` and how, and w
 inside of a composite; a `TaskRunner` runs it, as a `TaskIdentity` by which others know it; what takes long is done
 `Aside`, by default `at_once`. Inside, `components` is a room that deals with the components of the ecology, and
 `record` answers questions about what is deployed. A `Keeper` runs the tasks that live in the sites, which keep their
-records in a `TaskFolder`. What has failed is tried again after a `GrowingPause`. `ask_holders` asks all configurators
-which components they hold, `holders_in` reads their answers. Each is loaded when it is first used: a site without
-tasks, and a command that only looks on, start sooner.
+records in a `TaskFolder`. `ask_holders` asks all configurators which components they hold, `holders_in` reads their
+answers. Each is loaded when it is first used: a site without tasks, and a command that only looks on, start sooner.
 """
 
 from typing import TYPE_CHECKING
@@ -14,7 +13,6 @@ from typing import TYPE_CHECKING
 from selfconf.late_names import late_names
 
 if TYPE_CHECKING:
-    from selfconf.deployment.growing_pause import GrowingPause
     from selfconf.deployment.holders import ask_holders, holders_in
     from selfconf.deployment.keeper import Keeper
     from selfconf.deployment.run_request import Aside, ComposeFunction, Outside, RunRequest, TaskIdentity, at_once
@@ -24,7 +22,6 @@ if TYPE_CHECKING:
 __all__ = [
     "Aside",
     "ComposeFunction",
-    "GrowingPause",
     "Keeper",
     "Outside",
     "RunRequest",
@@ -39,7 +36,6 @@ __all__ = [
 _HOME = {
     "Aside": "run_request",
     "ComposeFunction": "run_request",
-    "GrowingPause": "growing_pause",
     "Keeper": "keeper",
     "Outside": "run_request",
     "RunRequest": "run_request",

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import math
 
+from selfconf.bus.growing_pause import GrowingPause
 from selfconf.bus.timer import Timer
 from selfconf.configurator import Appeared, Loss, Phase
 from selfconf.deployment.components import HeldLives
-from selfconf.deployment.growing_pause import GrowingPause
 from selfconf.deployment.task_context import TaskContext
 from selfconf.model.refusal import Undecided
 from selfconf.model.term import IRI

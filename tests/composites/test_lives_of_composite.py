@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from selfconf.bus.growing_pause import WELL_AGAIN
 from selfconf.composites.lives_of_composite import LOOK_AT_REFUSED, NEXT_LIFE, OTHER_LIFE
 from selfconf.configurator import Phase
 from selfconf.deployment import TaskRunner
-from selfconf.deployment.growing_pause import WELL_AGAIN
 from selfconf.deployment.retries import TRY_AGAIN
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode

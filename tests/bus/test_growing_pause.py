@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from selfconf.deployment.growing_pause import WELL_AGAIN, GrowingPause
+from selfconf.bus.growing_pause import WELL_AGAIN, GrowingPause
 
 
 def test_a_pause_doubles_with_each_try_up_to_the_longest() -> None:
