@@ -105,13 +105,15 @@ def component_states(discovery: Discovery, told: Mapping[IRI, Sequence[CallAnswe
 
 
 def unadvertised(discovery: Discovery, told: Mapping[IRI, Sequence[CallAnswer]]) -> Iterator[str]:
-    """A sentence for each component that a task holds and no site advertises, as its file is gone since it began.
+    """A sentence for each component that lives and no site advertises, so that no task finds it.
 
-    None where a site has not answered, which may advertise it.
+    It was started by hand without a site that has its file, or its file is gone since a task began to hold it. None
+    where a site has not answered, which may advertise it.
     """
     for component, (answer, *_) in sorted(told.items()) if not discovery.missing else ():
-        if answer.task and component not in discovery.found:
-            yield f"{component} lives, and the task {task_name(answer.task)} holds it, but no site advertises it"
+        if component not in discovery.found:
+            holder = f", and the task {task_name(answer.task)} holds it" if answer.task else ""
+            yield f"{component} lives{holder}, but no site advertises it"
 
 
 def issue_rates(

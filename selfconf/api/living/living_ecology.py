@@ -159,8 +159,8 @@ class LivingEcology(Ecology):
     def component_states(self) -> tuple[ComponentState, ...]:
         """How each advertised component is: whether it lives, who holds it, where, since when; sorted by IRI.
 
-        A component that lives and does not answer is named among the `complaints`, as is one that a task holds and no
-        site advertises any more. A reader (`read.NAME`) learns from configurators alone which task holds it.
+        A component that lives and does not answer is named among the `complaints`, as is one that lives and no site
+        advertises. A reader (`read.NAME`) learns from configurators alone which task holds it.
         """
         discovery = self.discover()
         asked = self._view.keys.any_call("state")

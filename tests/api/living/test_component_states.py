@@ -88,11 +88,12 @@ def test_a_component_that_is_several_processes_is_named_with_each_of_them() -> N
     assert said.startswith(f"{CLOCK} is process 1 on a, and process 2 on a and life c as well; ")
 
 
-def test_a_component_that_is_held_and_advertised_no_more_is_named() -> None:
+def test_a_component_that_lives_and_is_not_advertised_is_named() -> None:
     told = told_lives(KEYS, Replies((answer(CLOCK), answer(LAMP, task=""))))
     assert list(unadvertised(Discovery(found=FOUND), told)) == []
     assert list(unadvertised(Discovery(), told)) == [
-        f"{CLOCK} lives, and the task t holds it, but no site advertises it"
+        f"{CLOCK} lives, and the task t holds it, but no site advertises it",
+        f"{LAMP} lives, but no site advertises it",
     ]
     assert list(unadvertised(Discovery(missing=("home",)), told)) == [], "home may advertise it"
 
