@@ -23,7 +23,9 @@ excludes the values which it does not admit is added (`Encoding.exclude`) when t
 
 *Groups.* Where options exclude each other (`exclusion`), one bound for each group says so, in place of the needs from
 which that follows; and what counting the groups has proved is added. With patience, counting may be left, to be gone on
-with (`Encoding.count`) when the clauses turn out to be hard without.
+with (`Encoding.count`) when the clauses turn out to be hard without. Where a role has several options of a group, as an
+item that may lie in several ways over one place, a literal which holds iff one of them plays takes their place in the
+bound (`Encoding.gather`) when the clauses turn out to be hard: what is learned then is about roles and places.
 
 *Limits.* Of the options that supply none of some needs, though they fill a slot for these, no more play than there are
 slots to spare (`need_counting`): a bound, left out with guards as well. Needs that only roles of one slot each may
@@ -44,7 +46,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from selfconf.search.engines.capacity_counting import within_capacity
 from selfconf.search.engines.counting_order import counting_order
 from selfconf.search.engines.exclusion import exclusive_groups
-from selfconf.search.engines.formula import FEW_TO_COUNT, Formula, Implied
+from selfconf.search.engines.formula import FEW_TO_COUNT, AtMost, Formula, Implied
 from selfconf.search.engines.group_counting import ExclusiveGroups
 from selfconf.search.engines.need_counting import Undersupply, counted_needs, limits, supplied
 from selfconf.search.engines.probing import probed
@@ -74,6 +76,8 @@ class Encoding(Formula):
         """The literals of the options that support each of these, by role."""
         self._valued: list[tuple[list[tuple[int, int, int]], list[tuple[int, int]]]] = []
         """The options that constrain each variable which has literals for its values, and these, each with a mask."""
+        self._crowds: dict[int, list[list[int]]] = {}
+        """For the bounds of groups of which a role has several options, by their numbers, the options of each role."""
         self._asked = Counter(reduced.slots)
         self.plays: tuple[tuple[int, ...], ...] = tuple(
             self._literals(role, len(options)) for role, options in enumerate(reduced.options)
@@ -274,6 +278,12 @@ class Encoding(Formula):
             self.statements += exclusions_of_values(admitting, values, self.any_of)
         return self.statements[before:]
 
+    def gather(self) -> None:
+        """Bound the roles that play an option of a group, not the options, for solvers that get the bounds later."""
+        for place, by_role in self._crowds.items():
+            self.bounds[place] = AtMost([self.any_of(literals) for literals in by_role], 1)
+        self._crowds = {}
+
     def probe(self) -> list[list[int]]:
         """Rule out options that were tried alone, where roles share components, and return the clauses."""
         before = len(self.statements)
@@ -332,11 +342,22 @@ class Encoding(Formula):
 
     def _groups(self, known: ExclusiveGroups) -> None:
         options = [literal for literals in self.plays for literal in literals]
+        # What to gather the options by: the role, where it plays one of them; else each by itself.
+        parts = [
+            role if self._asked[role] == 1 else -literal
+            for role, literals in enumerate(self.plays)
+            for literal in literals
+        ]
         for group in known.groups:
             if len(group) == 2:
                 self.statements.append([-options[number] for number in group])
-            else:
-                self.at_most([options[number] for number in group], 1)
+                continue
+            gathered: defaultdict[int, list[int]] = defaultdict(list)
+            for number in group:
+                gathered[parts[number]].append(options[number])
+            if 1 < len(gathered) < len(group):
+                self._crowds[len(self.bounds)] = list(gathered.values())
+            self.at_most([options[number] for number in group], 1)
         self._counted(known)
 
     def _counted(self, known: ExclusiveGroups) -> None:

@@ -152,6 +152,7 @@ class _Descent:
             if not self.finished:
                 for clause in (*encoding.probe(), *encoding.count()):
                     first.clauses.add(clause)
+                encoding.gather()
                 self.advance(first, max(0, encoding.size // PREPARED - BRIEF))
             if not self.finished:
                 self._search_together(first, encoding, stack)

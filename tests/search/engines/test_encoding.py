@@ -28,6 +28,18 @@ ALIKE = problem(
     values={"eye": {"left": 0b00011, "right": 0b11100}, "mind": {"mind": 0b11100}},
     domain=HOURS,
 )
+CROWDED = problem(
+    {
+        "sky": [component("day", outputs="o:Sun"), component("night", outputs="o:Stars")],
+        "one": [component("here"), component("there", "i:Sun", "o:Image"), component("elsewhere", "i:Stars")],
+        "two": [component("near"), component("far", "i:Stars")],
+        "mind": [MIND, component("dream", "i:Stars")],
+    },
+    "sky>one sky>two sky>mind one>mind",
+    values={"one": {"here": 0b01, "there": 0b01}, "two": {"near": 0b10}},
+    domain=("first", "second"),
+)
+"""One place, which the first role may take in two ways, and the second in one."""
 WIRES = problem(
     {
         "wires": [
@@ -63,6 +75,7 @@ PROBLEMS = {
     ),
     "more roles than components": TWINS,
     "a role that issues one of two signals, and one of two others": WIRES,
+    "a place that roles may take in several ways": CROWDED,
     "a need of two candidates": problem(
         {
             "eye": [BOTH, component("deaf")],
@@ -191,3 +204,19 @@ def test_options_with_a_need_that_one_option_supports_are_written_as_one() -> No
     (seen,) = [one for one in encoding.statements if isinstance(one, Implied)]
     assert (seen.literal, list(seen.literals), seen.alone) == (encoding.plays[0][0], list(encoding.plays[1]), False)
     assert [[-mind, seen.literal] for mind in seen.literals] == [one for one in encoding.clauses() if len(one) == 2]
+
+
+@pytest.mark.parametrize("given", PROBLEMS.values(), ids=PROBLEMS)
+def test_where_options_of_groups_are_gathered_the_models_are_the_solutions(given: Problem) -> None:
+    encoding = Encoding(reduced(given))
+    encoding.gather()
+    assert played(encoding) == solutions(given)
+
+
+def test_the_options_of_a_role_in_a_group_are_bounded_by_one_literal_once_they_are_gathered() -> None:
+    encoding = Encoding(reduced(CROWDED))
+    _, (here, there, _), (near, _), _ = encoding.plays
+    place = [sorted(bound.literals) for bound in encoding.bounds].index(sorted([here, there, near]))
+    top = encoding.top
+    encoding.gather()
+    assert encoding.bounds[place] == ([top + 1, near], 1, ())
