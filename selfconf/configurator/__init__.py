@@ -4,10 +4,10 @@
 
 *What it hears*, each an `Event`: its task begins (`Accepted`), is taken over as it runs (`Adopted`), is handed over
 (`HandedOver`) or ends (`Stopped`); the ecology has answered (`Discovered`), and a search has (`Composed`); a component
-has `Answered` a `Call`, or is known not to (`Unanswered`), has `Failed`, is `Freed` by another task, is still not free
-(`WaitedLong`), has `Appeared`, or has others behind its outputs (`Rewired`); one was lost a while ago (`LossLasts`), or
-for good (`StayedAway`); something better may be had (`Improvable`); the bus is back (`Reconnected`); the task is
-`Ranked` otherwise.
+has `Answered` a `Call`, or is known not to (`Unanswered`), has `Failed`, is `Freed` by another task, has
+`BegunElsewhere`, is still not free (`WaitedLong`), has `Appeared`, or has others behind its outputs (`Rewired`); one
+was lost a while ago (`LossLasts`), or for good (`StayedAway`); something better may be had (`Improvable`); the bus is
+back (`Reconnected`); the task is `Ranked` otherwise.
 
 *What is to be done*, each an `Effect`: ask the ecology (`Discover`), search (`Compose`); `WakeUp` a component, reserve
 it (`ReserveOf`), wait for it (`QueueFor`, `AwaitRelease`, `AwaitReturn`) or not (`Decline`), apply to it (`ApplyTo`),
@@ -43,6 +43,7 @@ from selfconf.configurator.events import (
     Adopted,
     Answered,
     Appeared,
+    BegunElsewhere,
     Call,
     Composed,
     Discovered,
@@ -73,6 +74,7 @@ __all__ = [
     "ApplyTo",
     "AwaitRelease",
     "AwaitReturn",
+    "BegunElsewhere",
     "Call",
     "Caller",
     "Callers",

@@ -186,6 +186,13 @@ def heed_free(state: State, component: IRI) -> Reaction:
     return replace(known, queued=known.queued - {component}), (Decline(component, state.epoch),)
 
 
+def heed_beginning(state: State, component: IRI) -> Reaction:
+    """A component acts for another task, which may want the same of it: a task that waits looks whether it does."""
+    if state.phase is not Phase.REFUSED:
+        return deploying.ask_again(state, component)
+    return phases.discover(state) if component in state.queued & state.sharers.keys() else (state, ())
+
+
 def _free(state: State, component: IRI) -> Reaction:
     """No other task holds a component any more: it counts again for the search."""
     lost = {c: loss for c, loss in state.lost.items() if c != component or not loss.busy}

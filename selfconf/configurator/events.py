@@ -130,6 +130,13 @@ class Freed:
 
 
 @immutable
+class BegunElsewhere:
+    """A component begins to act for another task while some wait for it, which may share it if they want the same."""
+
+    component: IRI
+
+
+@immutable
 class WaitedLong:
     """A component that was asked for, and is held by another task, has not become free for some time."""
 
@@ -204,6 +211,7 @@ Event = (
     | Answered
     | Failed
     | Freed
+    | BegunElsewhere
     | WaitedLong
     | Appeared
     | Rewired

@@ -34,6 +34,7 @@ from selfconf.configurator.events import (
     Adopted,
     Answered,
     Appeared,
+    BegunElsewhere,
     Call,
     Composed,
     Discovered,
@@ -81,6 +82,8 @@ def step(state: State, event: Event) -> Reaction:
             return searching.heed_absence(state, event)
         case Freed():
             return answering.heed_free(state, event.component)
+        case BegunElsewhere():
+            return answering.heed_beginning(state, event.component)
         case WaitedLong():
             return deploying.ask_again(state, event.component) if event.epoch == state.epoch else (state, ())
         case Appeared():

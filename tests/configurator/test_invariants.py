@@ -32,6 +32,7 @@ from selfconf.configurator.events import (
     Adopted,
     Answered,
     Appeared,
+    BegunElsewhere,
     Call,
     Composed,
     Discovered,
@@ -97,6 +98,7 @@ ONE_OF_EACH: list[Event] = [
     ),
     *(Failed(component, life, cause) for component in EVERYBODY for life in ("", "1", "9") for cause in Cause),
     *(Freed(component) for component in EVERYBODY),
+    *(BegunElsewhere(component) for component in EVERYBODY),
     *(WaitedLong(component, epoch) for component in EVERYBODY for epoch in (1, 101, 102)),
     LossLasts(),
     LossLasts(frozenset((DRIVE,))),
@@ -342,6 +344,7 @@ def event_of(state: State, numbers: tuple[int, ...]) -> Event:
         others: list[Event] = [
             Freed(component),
             WaitedLong(component, state.epoch - how % 2),
+            BegunElsewhere(component),
             Improvable(),
             Rewired(component),
             Ranked(when % 3 - 1),

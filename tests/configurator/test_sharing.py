@@ -8,9 +8,10 @@ from dataclasses import replace
 import pytest
 
 from selfconf.configurator.deploying import MOST_ASKED_AHEAD, MOST_ASKED_BEHIND
-from selfconf.configurator.effects import AwaitRelease, Compose, Effect
+from selfconf.configurator.effects import AwaitRelease, Compose, Discover, Effect, WakeUp
 from selfconf.configurator.events import (
     Accepted,
+    BegunElsewhere,
     Call,
     Discovered,
     Event,
@@ -33,6 +34,7 @@ from tests.configurator.builders import (
     TRACKER,
     History,
     applied,
+    kinds,
     navigation,
     released,
 )
@@ -151,6 +153,20 @@ def test_a_component_is_shared_as_its_holder_wants_where_that_can_be() -> None:
     history.all_answer()
     assert history.state.phase is Phase.RUNNING
     assert not history.state.taken
+
+
+def test_a_task_that_waits_looks_again_when_what_it_would_share_begins_to_act_for_another_task() -> None:
+    history = History(replace(TASK, patient=True))
+    history.hear(Accepted(100), Discovered({}, sharers(navigation(ODOMETRY))))
+    history.composed(navigation())
+    history.composed(REFUSAL)
+    history.composed(REFUSAL)
+    history.composed(navigation())
+    assert (history.state.phase, history.state.queued) == (Phase.REFUSED, {CONTROL})
+    assert history.hear(BegunElsewhere(TRACKER)) == []
+    assert history.hear(BegunElsewhere(CONTROL)) == [Discover()]
+    history.hear(Discovered({}, sharers(navigation())))
+    assert kinds(history.composed(navigation()))[-1] is WakeUp
 
 
 def test_a_loss_begins_a_search_that_avoids_nothing() -> None:

@@ -105,6 +105,20 @@ def test_a_component_is_shared_with_a_task_that_gives_it_the_same_values_alone(
         assert [(component, holder.name) for component, holder in refused.refusal.held][-1] == (iri("oracle"), "first")
 
 
+def test_a_task_that_waits_shares_what_another_that_wants_the_same_has_got_before_it_at_once(tmp_path: Path) -> None:
+    lab = Lab(tmp_path, advertised=SHARED)
+    lab.site("shared", *SHARED)
+    for name in SHARED:
+        lab.component(name)
+    first = lab.agent(ASKED, (("goal", "x"),), name="first")
+    assert lab.running(first)
+    waiting = [lab.agent(ASKED, (("goal", "y"),), patient=True, name=name) for name in ("second", "third")]
+    lab.let_pass(TRY_AGAIN / 2)
+    first.stop()
+    lab.let_pass(TRY_AGAIN / 5)
+    assert [one.state.phase for one in waiting] == [Phase.RUNNING] * 2
+
+
 def test_a_task_of_higher_priority_has_the_components_and_the_other_waits_and_goes_on_afterwards(lab: Lab) -> None:
     low = lab.agent(patient=True)
     lab.running(low)

@@ -8,7 +8,7 @@ from functools import partial
 from typing import TypeVar
 
 from selfconf.bus.port import Sample, Urgency
-from selfconf.configurator import Failed, Freed, Rewired, WaitedLong
+from selfconf.configurator import BegunElsewhere, Failed, Freed, Rewired
 from selfconf.deployment.components.held_lives import HeldLives
 from selfconf.deployment.components.port_ends import PortEnds
 from selfconf.deployment.task_context import TaskContext
@@ -117,4 +117,4 @@ class ComponentMessages:
         if free.task == self._task:
             self._step(Freed(free.component))
         elif not free.task:
-            self._step(WaitedLong(free.component, self._state().epoch))
+            self._step(BegunElsewhere(free.component))
