@@ -8,7 +8,8 @@ After each kill the folder is read:
 
     opens     the store can be opened, as the next server does too
     whole     each configuration in it has all that was told of it
-    kept      nothing is missing that was there after the kill before, or that was told a second or more before the kill
+    kept      nothing is missing that was there after the kill before, or was told a second or more before the kill,
+              but perhaps what ran as the server began to follow: the next one may have been heard before it
     lacks     the time before the kill from which on something is missing, in ms; zero if nothing is
 """
 
@@ -134,7 +135,6 @@ class Killed(NamedTuple):
 def kill(restless: Restless, serve: Callable[[], subprocess.Popen[str]], folder: Path, seconds: float) -> Killed:
     """Let a server write for some seconds, kill it, and look at what it has kept."""
     before = set(past_graphs(folder)) if (folder / "CURRENT").exists() else set()
-    told_before = set(restless.told)
     server = serve()
     try:
         assert server.stdout is not None
@@ -146,6 +146,7 @@ def kill(restless: Restless, serve: Callable[[], subprocess.Popen[str]], folder:
             if time.monotonic() > deadline:
                 raise RuntimeError("the server does not follow the configurator, and so writes nothing")
             time.sleep(0.01)  # until it follows the configurator
+        told_before = set(restless.told)  # also what ran just now: the next one may have overtaken the answer
         time.sleep(seconds)  # the moment of the kill is random
     finally:
         moment = time.monotonic()

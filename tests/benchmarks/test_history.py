@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import threading
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -42,6 +43,20 @@ def test_a_server_that_follows_nothing_is_no_success(tmp_path: Path, monkeypatch
 
     with pytest.raises(RuntimeError, match="does not follow"):
         kill(restless, serve, tmp_path, 0.0)
+
+
+def test_what_ran_as_the_server_began_to_follow_may_be_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The next configuration may have overtaken the answer that tells it."""
+    monkeypatch.setattr(history, "past_graphs", lambda folder: {})
+    restless: Any = SimpleNamespace(told={}, sizes={})
+
+    def begin() -> str:
+        threading.Timer(1.0, restless.told.setdefault, ("urn:running", 0.0)).start()
+        return "http://127.0.0.1/"
+
+    talk = SimpleNamespace(readline=begin)
+    server: Any = SimpleNamespace(stdout=talk, kill=lambda: None, communicate=lambda: ("", ""))
+    assert kill(restless, lambda: server, tmp_path, 0.0) == Killed(0, 0.0, (), ())
 
 
 def test_the_report_tells_what_is_torn_and_what_is_missing() -> None:
