@@ -25,8 +25,8 @@ class Names:
         return f"<{term}>" if isinstance(term, IRI) else str(term)
 
     def means(self, word: object, iri: IRI) -> bool:
-        """Whether a word stands for an IRI: it is that, its local name, or as this shortens it."""
-        return word in (iri, iri.short, self(iri))
+        """Whether a word stands for an IRI: it is that, with or without brackets, or its local name, or its CURIE."""
+        return word in (iri, f"<{iri}>", iri.short, self(iri))
 
 
 def ecology_names(prefixes: Mapping[str, str], iris: Iterable[str]) -> tuple[Names, str]:

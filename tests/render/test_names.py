@@ -60,3 +60,11 @@ def test_the_empty_prefix_stands_for_the_namespace_that_most_iris_of_an_ecology_
     assert (names(IRI(f"{home}b")), names(IRI(f"{lab}a")), note) == (":b", f"<{lab}a>", f": is <{home}>")
     assert ecology_names({"rob": "urn:rob:"}, [])[1] == ""
     assert ecology_names({"h": home}, [f"{home}b"])[1] == ""
+
+
+def test_a_word_means_an_iri_in_each_of_its_forms() -> None:
+    iri = IRI("https://example.org/home#clock")
+    for word in (iri, f"<{iri}>", "clock", ":clock"):
+        assert NAMES.means(word, iri), word
+    for word in ("Clock", "ex:clock", "<clock>", "", None):
+        assert not NAMES.means(word, iri), word
