@@ -10,7 +10,7 @@ from selfconf.cli.options import add_ecology_arguments, add_format_argument, joi
 from selfconf.cli.tasks import code_of_tasks
 from selfconf.cli.terminal import complain, display, display_json
 from selfconf.errors import AuthorError
-from selfconf.model.wording import client_text, utc_text
+from selfconf.model.wording import client_text, counted, utc_text
 
 if TYPE_CHECKING:
     from selfconf.api.living.living_ecology import LivingEcology
@@ -123,4 +123,4 @@ def _tell(site: SiteAccess) -> None:
         at = datetime.fromtimestamp(refused.latest, timezone.utc)
         where = f" on {refused.key}" if refused.key else ""
         what = f"{client_text(refused.principal)}: {refused.attempt}{where}"
-        display(f"    {what}, {refused.number} times, latest {utc_text(at)}")
+        display(f"    {what}, {counted(refused.number, 'time')}, latest {utc_text(at)}")
