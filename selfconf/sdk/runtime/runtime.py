@@ -4,7 +4,8 @@ It holds the liveliness token, obeys control calls by the table in `selfconf.pro
 component's code run what they ask for, on the thread of that code. Everything else, supervision and the watch over the
 code included, happens on the thread of the bus, so that it never waits for the code. `ControlCalls` reads the calls,
 `CallAnswers` makes their answers, and `WaitingTasks` deals with the tasks that a call has to wait for; `ComponentCode`
-calls the code; outputs, inputs, unfed inputs, operations and supervision have modules of their own.
+calls the code, and `Applying` has it begin; outputs, inputs, unfed inputs, operations and supervision have modules of
+their own.
 """
 
 from __future__ import annotations
@@ -12,7 +13,6 @@ from __future__ import annotations
 import logging
 import secrets
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 
 from selfconf.bus.port import Bus, Urgency
@@ -22,7 +22,7 @@ from selfconf.model.signal_fields import SignalFields
 from selfconf.model.term import IRI
 from selfconf.model.wording import sayable
 from selfconf.protocol import activation as table
-from selfconf.protocol.activation import Activation, ActivationPhase, ActivationStep
+from selfconf.protocol.activation import Activation, ActivationStep
 from selfconf.protocol.codec import encode
 from selfconf.protocol.keys import Keys, task_name
 from selfconf.protocol.messages import (
@@ -41,7 +41,8 @@ from selfconf.sdk.component_code import ComponentCode
 from selfconf.sdk.component_context import ComponentContext
 from selfconf.sdk.inputs import InputEvents, InputFollower, Inputs
 from selfconf.sdk.operations import NeededOperations, OfferedOperations, OperationSignals
-from selfconf.sdk.outputs import SIGNALS_FIRST, Outputs
+from selfconf.sdk.outputs import Outputs
+from selfconf.sdk.runtime.applying import LIFE_ENDS, Applying
 from selfconf.sdk.runtime.component_timers import ComponentTimers
 from selfconf.sdk.runtime.control_calls import CallAnswers, ControlCalls, Reply
 from selfconf.sdk.runtime.other_lives import OtherLives
@@ -52,18 +53,6 @@ log = logging.getLogger(__name__)
 
 MOST_PENDING = 256
 """How many calls wait for the component's code and its inputs at most; those that come later are refused."""
-LIFE_ENDS = "it is leaving the ecology"
-"""What a component says that cannot act any more in this life, but does not refuse to."""
-
-
-@dataclass(slots=True, eq=False)
-class _ApplyCall:
-    """A call to act that is being carried out, and what answers it."""
-
-    message: Apply
-    reply: Reply
-    turn: int | None = None
-    """The turn of the code that it has begun, if it has: what comes of that is none of a start that has followed."""
 
 
 class ComponentRuntime:
@@ -106,10 +95,6 @@ class ComponentRuntime:
         )
         self._timers = ComponentTimers(bus, self.code)
         self._closed = False
-        self._failure = ""
-        """Why the component has failed the last time."""
-        self._after_start: list[Callable[[str | None], None]] = []
-        """What waits for the code to have started."""
         self._after_stop: list[Callable[[], None]] = []
         """What waits for the code to be at rest."""
         self._pending = 0
@@ -130,6 +115,9 @@ class ComponentRuntime:
             let_go=self._let_go,
         )
         self._answers = CallAnswers(context, lambda: self.stopping, self.code, self.inputs, self.outputs)
+        self._applying = Applying(
+            context, self.code, self.inputs, self.needed_operations, self._answers, self._begin_for_none
+        )
         self.calls = ControlCalls(context, self._answers, self._obey_at_rest)
         self._token = bus.announce(keys.life(profile.component, self.life))  # last: from now on it is called
         self._other_lives = OtherLives(context, self._outlived)
@@ -155,6 +143,7 @@ class ComponentRuntime:
             closed()
             return
         self._closed = True
+        self._applying.close()
         self._drop([hold.claim.task for hold in self.activation.holds])
         self.calls.close()
         self._token()
@@ -171,7 +160,7 @@ class ComponentRuntime:
         """Raise FAIL, at once, also on the way to a start; may be called from any thread."""
         if self.code.wanted:
             self.code.end_acting()
-            self._failure = reason
+            self._applying.failure = reason
             self._put_fail(cause, reason)
             self.bus.wake_up(self._failed)
 
@@ -241,7 +230,13 @@ class ComponentRuntime:
             self._waiting.ask_to_yield()
             self._waiting.offer()
         elif isinstance(message, Apply):
-            self._apply(_ApplyCall(message, reply), step)
+            starts = step is not ActivationStep.NONE
+            if starts:
+                self.outputs.forget()
+                if self.activation.queue:
+                    self._waiting.tell("")
+            self._applying.apply(message, reply, starts=starts)
+            self._rest_or_act()  # once what it lost is known to be unfed
         elif isinstance(message, Release):
             self._rest_or_act()
             self._grant()
@@ -267,70 +262,13 @@ class ComponentRuntime:
         if hold is None or last is None or not (hold.active and isinstance(hold.claim, Apply)):
             return
         if hold.claim.inputs != last.claim.inputs:
-            self.inputs.follow(hold.claim)
-            self.needed_operations.follow(hold.claim)
-
-    def _apply(self, call: _ApplyCall, step: ActivationStep) -> None:
-        """Have the code start, or take what has changed, and connect the inputs meanwhile."""
-        message = call.message
-        if step is not ActivationStep.NONE:
-            self.outputs.forget()
-            self._after_start = [partial(self._settle, call)]
-            self.code.start(message.values, partial(self._started, self._after_start))
-            call.turn = self.code.turn
-            if self.activation.queue:
-                self._waiting.tell("")
-        elif self._after_start:  # it is still starting, for an earlier call
-            self._after_start.append(partial(self._change, call))
-        else:
-            self._change(call, None)
-        self.inputs.follow(message)
-        self.needed_operations.follow(message)
-        self._rest_or_act()  # once what it lost is known to be unfed
-
-    def _change(self, call: _ApplyCall, trouble: str | None) -> None:
-        """Have the code that has started, unless there was trouble, take what has changed."""
-        if trouble is None and self.activation.hold(call.message.task) is not None:
-            self.code.change(call.message.values, partial(self._settle, call))
-        else:
-            self._settle(call, trouble)
-
-    def _settle(self, call: _ApplyCall, trouble: str | None) -> None:
-        """Answer a call once the inputs do as it says."""
-
-        def settled() -> None:
-            # Once more: what the call has said may have had the inside of a composite begin anew.
-            self.bus.later(SIGNALS_FIRST, lambda: self.inputs.when_settled(partial(self._answer, call, trouble)))
-
-        self.inputs.when_settled(settled)
-
-    def _answer(self, call: _ApplyCall, trouble: str | None) -> None:
-        """Answer a call by what has come of it; what was to begin for it and has not does so for no task."""
-        task = call.message.task
-        if trouble is None and self.activation.hold(task) is None:
-            trouble = "it was turned off again"
-        if trouble is None and not self.inputs.settled:  # the inside of a composite has been refused
-            trouble = self._failure
-        if trouble is None:
-            call.reply(self._answers.answer(Verdict.DONE, task))
-        elif self._closed:
-            call.reply(self._answers.answer(Verdict.OTHER_LIFE, task, LIFE_ENDS))
-        else:
-            if call.turn == self.code.turn and self.activation.phase is not ActivationPhase.FAILED:
-                self._begin_for_none(task)
-            call.reply(self._answers.answer(Verdict.REFUSED, task, trouble))
+            self._applying.follow(hold.claim)
 
     def _begin_for_none(self, task: str) -> None:
         """Act neither for a task whose call to start came to nothing, nor for those that share what has not begun."""
         acts = self.code.active
         holds = self.activation.holds
         self._drop([hold.claim.task for hold in holds if hold.claim.task == task or (hold.active and not acts)])
-
-    def _started(self, waiting: list[Callable[[str | None], None]], trouble: str | None) -> None:
-        if self._after_start is waiting:
-            self._after_start = []
-        for answer in waiting:
-            answer(trouble)
 
     # Being on and off.
 

@@ -12,7 +12,7 @@ from selfconf.deployment.components.calling import CALL
 from selfconf.deployment.components.reachability import SETTLING
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Release
-from selfconf.sdk.runtime.runtime import LIFE_ENDS
+from selfconf.sdk.runtime.applying import LIFE_ENDS
 from selfconf.sdk.runtime.supervision import GRACE
 from tests.composites.composite_house import NAVIGATOR, SERVICE, House, lost
 from tests.composites.composite_house import TASK as TASK_OF_HOUSE

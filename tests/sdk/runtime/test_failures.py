@@ -13,7 +13,7 @@ from selfconf.model.wording import LONGEST_REMARK
 from selfconf.protocol.activation import ActivationPhase
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Cause, Fail, Verdict, Wire
-from selfconf.sdk.component import Refused, Signal
+from selfconf.sdk.component import Signal
 from tests.lab import Recorder
 from tests.sdk.stage import (
     CAP,
@@ -29,16 +29,6 @@ from tests.sdk.stage import (
 )
 
 
-def test_a_component_that_refuses_to_start_says_why_and_stays_free() -> None:
-    stage = Stage()
-    stage.recorder.refusal = Refused("no light")
-    answer = stage.call(apply(1, US))
-    assert (answer.verdict, answer.detail, answer.active) == (Verdict.REFUSED, "no light", False)
-    stage.recorder.refusal = None
-    stage.others.announce(THEM)
-    assert stage.call(apply(2, THEM)).verdict is Verdict.DONE
-
-
 def test_a_component_that_breaks_when_it_is_started_says_how(caplog: pytest.LogCaptureFixture) -> None:
     stage = Stage()
     stage.recorder.refusal = ValueError("no camera")
@@ -47,19 +37,6 @@ def test_a_component_that_breaks_when_it_is_started_says_how(caplog: pytest.LogC
     assert answer.verdict is Verdict.REFUSED
     assert answer.detail == "it broke in started: ValueError: no camera"
     assert not stage.component.active
-
-
-def test_a_component_that_failed_and_refuses_to_start_again_is_free() -> None:
-    stage = Stage()
-    stage.call(apply(1, US))
-    stage.component.fail("lost her")
-    stage.let_pass(0.1)
-    stage.recorder.refusal = Refused("still dark")
-    assert stage.call(apply(2, US)).verdict is Verdict.REFUSED
-    assert stage.runtime.activation.phase is ActivationPhase.IDLE
-    stage.recorder.refusal = None
-    stage.others.announce(THEM)
-    assert stage.call(apply(3, THEM)).verdict is Verdict.DONE
 
 
 def test_a_component_that_breaks_on_a_signal_fails(caplog: pytest.LogCaptureFixture) -> None:

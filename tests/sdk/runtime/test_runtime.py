@@ -11,7 +11,7 @@ from selfconf.errors import ProgrammerError
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Apply, CallAnswer, Release, Reserve, Verdict
 from selfconf.sdk.component import Component
-from selfconf.sdk.runtime.runtime import LIFE_ENDS
+from selfconf.sdk.runtime.applying import LIFE_ENDS
 from tests.lab import Recorder
 from tests.sdk.stage import (
     CAP,
@@ -33,13 +33,6 @@ def test_a_component_is_idle_until_it_is_activated() -> None:
     assert (answer.verdict, answer.active, answer.epoch) == (Verdict.DONE, True, 7)
     assert stage.recorder.said == [("started",)]
     assert stage.component.active
-
-
-def test_an_activation_that_is_repeated_starts_nothing_anew() -> None:
-    stage = Stage()
-    for epoch in (1, 1, 2):
-        assert stage.call(apply(epoch, US)).verdict is Verdict.DONE
-    assert stage.recorder.said == [("started",)]
 
 
 def test_a_released_component_stops_and_may_be_activated_again() -> None:
@@ -97,16 +90,6 @@ def test_a_call_that_waits_for_code_that_leaves_hears_that_this_life_is_over_and
     stage.call(apply(1, US))
     stage.runtime.close()
     assert [(answer.verdict, answer.detail) for answer in answers] == [(verdict, LIFE_ENDS)]
-
-
-def test_a_component_that_leaves_while_it_starts_does_not_say_that_it_refuses() -> None:
-    class Ending(Recorder):
-        def started(self) -> None:
-            stage.runtime.close()
-
-    stage = Stage(Ending())
-    answer = stage.call(apply(1, US))
-    assert (answer.verdict, answer.detail, answer.life) == (Verdict.OTHER_LIFE, LIFE_ENDS, "life-1")
 
 
 def test_closing_an_idle_component_does_not_stop_it() -> None:
