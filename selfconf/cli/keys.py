@@ -66,6 +66,7 @@ def _action(
 
 
 def _add_days(parser: argparse.ArgumentParser) -> None:
+    # The default is `selfconf.access.DAYS`, which is not loaded to parse arguments; a test compares them.
     parser.add_argument(
         "--days", metavar="N", type=_days, default=7.0, help="for how many days it is good (default: %(default)g)"
     )

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from selfconf.errors import AuthorError
+from selfconf.model.wording import listed
 from selfconf.project import PROJECT_KEYS, Project, project_path, read_project
 
 VARIABLES: Mapping[str, str] = {
@@ -74,7 +75,7 @@ class Settings:
         if self._environment.get(variable):
             return f"{self._environment[variable]}, from ${variable}".replace("%", "%%")
         if dest == "bind" and self.project.bound:
-            return f"{', '.join(self.project.bound)} are bound in {self.project.path}".replace("%", "%%")
+            return f"those for {listed(self.project.bound)}, from {self.project.path}".replace("%", "%%")
         if dest not in self.project.values:
             return ""
         value = self.project.values[dest]

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from selfconf.access import DAYS
+from selfconf.cli.main import parser
 from tests.cli.command import run
 
 
@@ -17,6 +19,11 @@ def authority(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Path:
     assert made.code == 0
     assert "keep it to yourself" in made.out
     return tmp_path / "keys"
+
+
+@pytest.mark.parametrize("command", [("issue", "read.alice", "--out", "keys"), ("renew", "keys")])
+def test_a_certificate_is_good_for_as_long_as_one_from_the_library(command: tuple[str, ...]) -> None:
+    assert parser(["keys"]).parse_args(["keys", *command]).days == DAYS
 
 
 def test_a_holder_is_issued_shown_renewed_and_revoked(

@@ -55,6 +55,15 @@ def test_a_command_needs_no_options_where_the_project_has_them(capsys: pytest.Ca
     assert body["bindings"]["robot"].endswith("#Astrid")
 
 
+def test_the_help_says_for_which_templates_the_project_has_values(
+    project: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "200")
+    assert run(capsys, "configure", "--help").code == 0
+    (project / "selfconf.toml").write_text(f'{PROJECT}[bind.patrol]\nrobot = ":Pippi"\n')
+    assert "(now those for navigate and patrol, from ../selfconf.toml)" in run(capsys, "configure", "--help").out
+
+
 @pytest.mark.usefixtures("project")
 def test_what_is_typed_goes_before_the_file_value_by_value(capsys: pytest.CaptureFixture[str]) -> None:
     assert configure(capsys, "--bind", "robot=:Nobody").code == 1
