@@ -22,7 +22,7 @@ from typing import Any
 from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
 from selfconf.search.engines.encoding import Encoding
-from selfconf.search.engines.formula import FEW_TO_COUNT, AtMost, Implied
+from selfconf.search.engines.formula import FEW_TO_COUNT, AtMost, Counted, Implied
 from selfconf.search.reduction import Constraint, Option, ReducedProblem
 
 SOLVER = "Minicard"
@@ -91,7 +91,7 @@ class ClauseSolver:
         distinct: bool = True,
         encoding: Encoding | None = None,
         solver: str | None = None,
-        counters: bool = False,
+        counted: Counted = Counted.NONE,
     ) -> None:
         from pysat import solvers
 
@@ -108,16 +108,16 @@ class ClauseSolver:
         """Whether an interrupt has to be cleared after the call that it ends."""
         self._refuted: set[int] = set()
         """The literals of which propagation has shown that they cannot hold, whatever else does."""
-        self.counters = counters
-        """Whether numbers that are worth it are counted by clauses, about which the solver can learn."""
+        self.counted = counted
+        """Which bounds are clauses that count."""
         encoding = encoding or Encoding(reduced, guarded, distinct)
         self.guards: dict[Constraint, int] = encoding.guards
         self.plays: tuple[tuple[int, ...], ...] = encoding.plays
         """For each role, the literals of its options."""
         self._top = 0
         self.extend(encoding.statements, encoding.top)
-        for literals, most, force in encoding.bounds:
-            self.at_most(literals, most, force)
+        for bound in encoding.bounds:
+            self.at_most(*bound)
         self._solver.set_phases([literals[0] for literals in self.plays if literals])
 
     def __enter__(self) -> ClauseSolver:
@@ -151,11 +151,11 @@ class ClauseSolver:
         """Try these literals first, which changes the time alone."""
         self._solver.set_phases(list(literals))
 
-    def at_most(self, literals: Sequence[int], most: int, force: Sequence[int] = ()) -> None:
-        """Allow no more than a number of the literals to hold, under the guards given."""
+    def at_most(self, literals: Sequence[int], most: int, force: Sequence[int] = (), exactly: bool = False) -> None:
+        """Allow at most a number of the literals to hold, under the guards given; `exactly` if no fewer ever do."""
         if most >= len(literals):
             return
-        counted = self.counters and AtMost(literals, most).worth_counting
+        counted = AtMost(literals, most, force, exactly).is_counted(self.counted)
         if not force and not counted and self._solver.supports_atmost():
             self._solver.add_atmost(list(literals), most)
             return

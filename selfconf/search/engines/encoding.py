@@ -122,7 +122,7 @@ class Encoding(Formula):
                 continue
             if FEW_TO_COUNT < asked < len(literals):
                 literals = tuple([literals[place] for place in counting_order(self.reduced.options[role])])
-            self.at_most(literals, asked)
+            self.at_most(literals, asked, exactly=True)
             if len(literals) < asked:
                 impossible = self.literal()
                 self.statements.append([*force, impossible])

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Collection, Iterator, Sequence
+from enum import IntEnum
 from functools import reduce
 from operator import and_, or_
 from typing import NamedTuple
@@ -16,17 +17,38 @@ FEW_TO_COUNT = 4
 """At most this number of some is counted one after the other, in fewer clauses than a totalizer has; more by that."""
 
 
+class Counted(IntEnum):
+    """Which bounds a solver that counts by itself gets as clauses that count, too, about which it can learn."""
+
+    NONE = 0
+    MANY = 1
+    """Those that count many: of few, and of most of them, there is little to learn."""
+    ALL = 2
+    """All but those that say that options exclude each other; with which option plays in a role of one slot."""
+
+
 class AtMost(NamedTuple):
     """At most a number of the literals hold, if the literals whose negations are in `force` do."""
 
     literals: Sequence[int]
     most: int
     force: Sequence[int] = ()
+    exactly: bool = False
+    """Whether as many as that do hold."""
 
     @property
-    def worth_counting(self) -> bool:
-        """Whether clauses that count are worth their number: of few, and of most of them, there is little to learn."""
-        return FEW_TO_COUNT < self.most <= len(self.literals) // 2
+    def counts(self) -> bool:
+        """Whether it counts several of the literals, and no more than half of them."""
+        return 1 < self.most <= len(self.literals) // 2
+
+    @property
+    def counts_many(self) -> bool:
+        """Whether it counts many of the literals, and no more than half of them."""
+        return self.counts and self.most > FEW_TO_COUNT
+
+    def is_counted(self, counted: Counted) -> bool:
+        """Whether it is one of these bounds."""
+        return self.counts_many if counted is Counted.MANY else bool(counted) and (self.most > 1 or self.exactly)
 
 
 class Implied(NamedTuple):
@@ -54,7 +76,7 @@ class Formula:
     def size(self) -> int:
         """About how many clauses there are, for a solver that needs them to count."""
         clauses = sum([len(one.literals) if isinstance(one, Implied) else 1 for one in self.statements])
-        return clauses + sum([len(some) * min(most, len(some) - most) for some, most, _ in self.bounds])
+        return clauses + sum([len(some) * min(most, len(some) - most) for some, most, *_ in self.bounds])
 
     def clauses(self) -> Iterator[list[int]]:
         """Yield the clauses one by one."""
@@ -74,10 +96,10 @@ class Formula:
         """Let there be no model."""
         self.statements += [[self.literal()], [-self.top]]
 
-    def at_most(self, literals: Sequence[int], most: int, force: Sequence[int] = ()) -> None:
-        """Let at most so many of some literals hold, where what is in force says so."""
+    def at_most(self, literals: Sequence[int], most: int, force: Sequence[int] = (), exactly: bool = False) -> None:
+        """Let at most so many of some literals hold, where what is in force says so; `exactly` if no fewer ever do."""
         if most < len(literals):
-            self.bounds.append(AtMost(literals, most, force))
+            self.bounds.append(AtMost(literals, most, force, exactly))
 
     def any_of(self, literals: list[int]) -> int:
         """Return a literal that holds iff one of some does."""

@@ -9,15 +9,16 @@ with it.
 CaDiCaL with the counting written as clauses, on a third clasp, which decides in order and needs no questions
 (`ordered_decisions`), each by an order of magnitude and more. So MiniCard, which loads the clauses in the least time,
 begins. It soon gets support clauses, from which more propagates (`support_clauses`), a little later the values that
-options exclude, and, where roles ask for many, the counting as clauses too. After `BRIEF` steps it gets what takes
-longer to find out, and mostly rules out nothing: another way to the answer is asked for (`OtherWay`), as to divide the
-problem, then options are tried alone (`probing`), and what has not been counted is. From then on clasp works beside it;
-where MiniCard has met `ALONE` conflicts, CaDiCaL joins in, in a process of its own (`rival`). Three on two processors
-would each take twice as long, so there CaDiCaL waits a little longer (`ALONE_OF_TWO`), and takes the place of clasp; if
-no engine has ended after `BESIDE_CADICAL`, MiniCard and clasp take turns on the other processor. Where there is one
-processor, all three take turns, each twice as long as before. With a budget of steps it is always in turns, as a step
-has to mean the same on every machine. What one engine has settled the others take over, since the least solution is
-unique: so the answer is the same whichever engine finds it, and the time is that of the better one at each question.
+options exclude, and, where roles ask for many, the counting as clauses too; where they ask for several, after `BRIEF`
+steps. Then it gets what takes longer to find out, and mostly rules out nothing: another way to the answer is asked for
+(`OtherWay`), as to divide the problem, then options are tried alone (`probing`), and what has not been counted is. From
+then on clasp works beside it; where MiniCard has met `ALONE` conflicts, CaDiCaL joins in, in a process of its own
+(`rival`). Three on two processors would each take twice as long, so there CaDiCaL waits a little longer
+(`ALONE_OF_TWO`), and takes the place of clasp; if no engine has ended after `BESIDE_CADICAL`, MiniCard and clasp take
+turns on the other processor. Where there is one processor, all three take turns, each twice as long as before. With a
+budget of steps it is always in turns, as a step has to mean the same on every machine. What one engine has settled the
+others take over, since the least solution is unique: so the answer is the same whichever engine finds it, and the time
+is that of the better one at each question.
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ from selfconf.model.refusal import Undecided
 from selfconf.search.budget import Budget
 from selfconf.search.engines.clause_learning import LONGEST_CALL, SECOND_SOLVER, ClauseSolver
 from selfconf.search.engines.encoding import Encoding
+from selfconf.search.engines.formula import Counted
 from selfconf.search.engines.ordered_decisions import OrderedDecisions
 from selfconf.search.engines.rival import Rival, processors
 from selfconf.search.engines.turn import Turn
@@ -150,10 +152,7 @@ class _Descent:
                 if not isinstance(chosen, Undecided):
                     return chosen
             if not self.finished:
-                for clause in (*encoding.probe(), *encoding.count()):
-                    first.clauses.add(clause)
-                encoding.gather()
-                self.advance(first, max(0, encoding.size // PREPARED - BRIEF))
+                first = self._prepare(first, encoding, stack)
             if not self.finished:
                 self._search_together(first, encoding, stack)
         if self.possible is False:
@@ -170,16 +169,35 @@ class _Descent:
             self.advance(first, UNSUPPORTED)
             if not self.finished:
                 first.clauses.extend(encoding.exclude(), encoding.top)
-        if any(bound.worth_counting for bound in encoding.bounds):
+        if any(bound.counts_many for bound in encoding.bounds):
             self.advance(first, BRIEF_COUNTING)
-            if not self.finished:
-                first = Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding, counters=True)))
+            first = self._counting(first, Counted.MANY, encoding, stack)
             self.advance(first, BRIEF_COUNTED)
         else:
             self.advance(first, BRIEF)
         if not self.finished and len(self.settled) * NEARLY >= len(self.slots):
             self.advance(first, BRIEF)  # to prepare company takes as long as hundreds of conflicts
         return first
+
+    def _prepare(self, first: Turn, encoding: Encoding, stack: ExitStack) -> Turn:
+        """Let the first solver work with all that can be found out, until company is worth its price."""
+        found = (*encoding.probe(), *encoding.count())
+        encoding.gather()
+        company = max(0, encoding.size // PREPARED - BRIEF)
+        if any(bound.counts and not bound.counts_many for bound in encoding.bounds):
+            first = self._counting(first, Counted.ALL, encoding, stack)
+            company = max(company, BRIEF_COUNTED)
+        else:
+            for clause in found:
+                first.clauses.add(clause)
+        self.advance(first, company)
+        return first
+
+    def _counting(self, turn: Turn, counted: Counted, encoding: Encoding, stack: ExitStack) -> Turn:
+        """Have the first solver begin anew, with clauses that count, if the answer is not known."""
+        if self.finished:
+            return turn
+        return Turn(stack.enter_context(ClauseSolver(self.reduced, encoding=encoding, counted=counted)))
 
     def _search_together(self, first: Turn, encoding: Encoding, stack: ExitStack) -> None:
         """Let all solvers work, beside each other or in turns."""

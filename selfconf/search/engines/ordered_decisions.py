@@ -138,7 +138,7 @@ def _aspif(encoding: Encoding) -> Iterator[str]:
     yield " ".join(["1 1", str(len(free)), *free, "0 0"])
     for statement in encoding.statements:
         yield from _rules(statement, literal, negation)
-    for literals, most, force in encoding.bounds:
+    for literals, most, force, _ in encoding.bounds:
         assert not force  # for there are no guards
         yield f"1 0 0 1 {most + 1} {len(literals)} {' 1 '.join(map(literal, literals))} 1"
     level = sum(map(len, encoding.plays))

@@ -44,7 +44,7 @@ class Rival:
             PAIRED,
             encoding.top,
             list(encoding.clauses()),
-            [(list(literals), most, list(force)) for literals, most, force in encoding.bounds],
+            [(list(bound.literals), bound.most, list(bound.force)) for bound in encoding.bounds],
             [encoding.plays[role] for role in slots],
             [place > 0 and slots[place] == slots[place - 1] for place in range(len(slots))],
             least,

@@ -17,6 +17,7 @@ from hypothesis import given
 from benchmarks.search.families import scaling
 from selfconf.search.budget import Budget
 from selfconf.search.engines import clause_learning, solver_available
+from selfconf.search.engines.formula import Counted
 from selfconf.search.engines.least_solution import least_by_clauses
 from selfconf.search.engines.ordered_decisions import OrderedDecisions
 from selfconf.search.problem import Problem
@@ -116,14 +117,24 @@ def test_another_thread_ends_a_call_and_the_next_one_goes_on(monkeypatch: pytest
         assert clauses.conflicts - before >= 100
 
 
-def test_numbers_of_five_up_to_half_are_counted_by_clauses_and_others_by_the_solver() -> None:
+@pytest.mark.parametrize(
+    ("counted", "which"),
+    [(Counted.NONE, []), (Counted.MANY, [5]), (Counted.ALL, [2, 4, 5, 6])],
+    ids=lambda one: str(one),
+)
+def test_numbers_are_counted_by_clauses_or_by_the_solver(counted: Counted, which: list[int]) -> None:
     pytest.importorskip("pysat")
-    with clause_learning.ClauseSolver(reduced(scaling.satisfiability(10, 2.0, 1)), counters=True) as clauses:
+    with clause_learning.ClauseSolver(reduced(scaling.satisfiability(10, 2.0, 1)), counted=counted) as clauses:
         literals = [clauses.literal() for _ in range(10)]
-        for most, grown in ((1, False), (4, False), (5, True), (6, False), (10, False)):
+        grown = []
+        for most in (2, 4, 5, 6, 10, 1):
             before = clauses.literal()
             clauses.at_most(literals, most)
-            assert (clauses.literal() > before + 1) == grown, most
+            grown += [most] if clauses.literal() > before + 1 else []
+        assert grown == which
+        before = clauses.literal()
+        clauses.at_most(literals, 1, exactly=True)
+        assert (clauses.literal() > before + 1) == (counted is Counted.ALL)
         for literal in literals[:2]:
             assert clauses.ask((literal,), Budget())
         assert not clauses.ask(literals[:2], Budget())

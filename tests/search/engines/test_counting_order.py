@@ -12,6 +12,7 @@ from selfconf.search.budget import Budget
 from selfconf.search.engines import counting_order, encoding
 from selfconf.search.engines.clause_learning import ClauseSolver
 from selfconf.search.engines.encoding import Encoding
+from selfconf.search.engines.formula import Counted
 from selfconf.search.engines.least_solution import least_of_clauses
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import Option, pruned, reduced
@@ -52,7 +53,7 @@ def test_guards_of_one_neighbourhood_are_counted_together(seed: int, monkeypatch
     for order in (counting_order.counting_order, lambda options: [*range(len(options))]):
         monkeypatch.setattr(encoding, "counting_order", order)
         given_ = pruned(reduced(domination(7, 12, seed)))
-        with ClauseSolver(given_, encoding=Encoding(given_, ordered=True), counters=True) as clauses:
+        with ClauseSolver(given_, encoding=Encoding(given_, ordered=True), counted=Counted.MANY) as clauses:
             assert clauses.solve((), Budget()) is True
             found.append([option.number for option in least_of_clauses(clauses, Budget())])
             conflicts.append(clauses.conflicts)

@@ -9,7 +9,7 @@ import pytest
 
 from benchmarks.search.families.puzzles import pigeonholes
 from selfconf.search.engines.encoding import Encoding
-from selfconf.search.engines.formula import Implied
+from selfconf.search.engines.formula import AtMost, Implied
 from selfconf.search.problem import Problem
 from selfconf.search.reduction import Constraint, Distinct, Fed, Played, pruned, reduced
 from tests.search.oracle import World
@@ -219,4 +219,4 @@ def test_the_options_of_a_role_in_a_group_are_bounded_by_one_literal_once_they_a
     place = [sorted(bound.literals) for bound in encoding.bounds].index(sorted([here, there, near]))
     top = encoding.top
     encoding.gather()
-    assert encoding.bounds[place] == ([top + 1, near], 1, ())
+    assert encoding.bounds[place] == AtMost([top + 1, near], 1)

@@ -13,7 +13,7 @@ def models(formula: Formula) -> list[set[int]]:
     for signs in product((1, -1), repeat=formula.top):
         held = {sign * literal for literal, sign in enumerate(signs, 1)}
         clauses = all(not held.isdisjoint(clause) for clause in formula.clauses())
-        if clauses and all(sum(one in held for one in some) <= most for some, most, _ in formula.bounds):
+        if clauses and all(sum(one in held for one in some) <= most for some, most, *_ in formula.bounds):
             found.append({literal for literal in held if literal > 0})
     return found
 

@@ -21,6 +21,7 @@ from benchmarks.search.families.puzzles import queens
 from benchmarks.search.families.random_relations import ring
 from selfconf.search.budget import Budget
 from selfconf.search.engines import clause_learning, least_solution, rival
+from selfconf.search.engines.formula import Counted
 from selfconf.search.engines.least_solution import any_by_clauses, least_by_clauses
 from selfconf.search.engines.ordered_decisions import OrderedDecisions
 from selfconf.search.engines.rival import Rival
@@ -70,23 +71,28 @@ def test_an_engine_that_cannot_join_in_is_done_without(monkeypatch: pytest.Monke
     assert numbers(least_by_clauses(given_, Budget())) == expected
 
 
-def test_the_first_solver_begins_anew_with_counters_only_where_a_role_asks_for_many(
+def test_the_first_solver_begins_anew_with_clauses_that_count_only_where_a_role_asks_for_several(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     for moment in ("UNSUPPORTED", "BRIEF_COUNTING", "BRIEF_COUNTED", "BRIEF"):
         monkeypatch.setattr(least_solution, moment, 0)
-    counters: list[bool] = []
+    counted: list[Counted] = []
 
     class Noted(clause_learning.ClauseSolver):
         def __init__(self, *arguments: Any, **options: Any) -> None:
             super().__init__(*arguments, **options)
-            counters.append(self.counters)
+            counted.append(self.counted)
 
     monkeypatch.setattr(least_solution, "ClauseSolver", Noted)
-    for problem, expected in ((ring(6, 3, 8, 6, 1), [False]), (cover(30, 24, 6, 0.25, 1), [False, True])):
-        counters.clear()
-        least_by_clauses(pruned(reduced(problem)), Budget())
-        assert counters == expected
+    for problem, expected in (
+        (queens(6, 1, 3), [Counted.NONE]),
+        (ring(6, 3, 8, 6, 1), [Counted.NONE, Counted.ALL]),
+        (cover(30, 24, 6, 0.25, 1), [Counted.NONE, Counted.MANY]),
+    ):
+        counted.clear()
+        found = least_by_clauses(pruned(reduced(problem)), Budget())
+        assert counted == expected
+        assert found is None or isinstance(found, list)
 
 
 def test_company_waits_for_as_long_as_it_takes_to_prepare(monkeypatch: pytest.MonkeyPatch) -> None:
