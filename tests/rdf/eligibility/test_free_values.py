@@ -23,8 +23,8 @@ from selfconf.rdf.vocabulary import RDF, XSD
 from selfconf.search.problem import Problem
 from selfconf.search.strategies import first as solve
 from tests.lab import PREFIXES, iri
-from tests.rdf.eligibility.test_compiler import COMPONENTS, ecology
 from tests.rdf.eligibility.test_partitioner import partitioner, read
+from tests.rdf.eligibility.test_shape_compiler import COMPONENTS, ecology
 
 PARAMETER = ":t a sc:Template ; sc:roles ( :r ) ; sc:parameter :v . :v a sc:Parameter ; sc:name 'v'"
 SETS = "; sc:sets [ sc:parameterType :T ; sc:value :v ]"

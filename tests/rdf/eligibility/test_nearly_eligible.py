@@ -15,8 +15,8 @@ from selfconf.rdf.eligibility.role_tests import ClassTest, Count
 from selfconf.rdf.tasks import bindings, templates
 from selfconf.rdf.turtle import document as turtle
 from tests.lab import ADVERTISEMENTS, PREFIXES, iri
-from tests.rdf.eligibility.test_compiler import COMPONENTS, HIERARCHIES, SHAPES, by_pyshacl, ecology
 from tests.rdf.eligibility.test_partitioner import partitioner, read
+from tests.rdf.eligibility.test_shape_compiler import COMPONENTS, HIERARCHIES, SHAPES, by_pyshacl, ecology
 
 ROLE = ":t a sc:Template ; sc:roles ( :r ) . :r a sc:Role ; "
 ROBOT = ':t a sc:Template ; sc:parameter :robot . :robot a sc:Parameter ; sc:name "robot" ; '

@@ -17,7 +17,7 @@ from selfconf.rdf.validation.lints.normal_form import NormalForm, ShapeSource
 from selfconf.rdf.vocabulary import SC
 from tests.harness.effort import examples, thorough
 from tests.lab import PREFIXES, iri
-from tests.rdf.eligibility.test_compiler import CLASSES, COMPONENTS, CONSTRAINTS, PATHS, TERMS, ecology, predicate
+from tests.rdf.eligibility.test_shape_compiler import CLASSES, COMPONENTS, CONSTRAINTS, PATHS, TERMS, ecology, predicate
 from tests.shipped import shipped_shapes
 
 TYPE = "<http://www.w3.org/1999/02/22-rdf-syntax-ns#type>"
