@@ -226,7 +226,8 @@ def _examined(name: str, octets: bytes) -> tuple[dict[str, Any], dict[tuple[str,
     called = {word: key for word, key in OTHER_WORDS.items() if word in body and key not in body}
     body = {called.get(key, key): value for key, value in body.items()}
     lines = {(called.get(keys[0], keys[0]), *keys[1:]): line for keys, line in _lines(text) if keys}
-    problems = [_problem(name, octets, lines, *one) for one in _wrong(body)]
+    written = {key: word for word, key in called.items()}
+    problems = [_problem(name, octets, lines, *one) for one in _wrong(body, written)]
     return body, lines, sorted(problems, key=lambda one: one.order)
 
 
@@ -244,8 +245,11 @@ def _not_toml(name: str, octets: bytes, said: str) -> Diagnostic:
     return Diagnostic(name, line, column, "SC-P01", f"Not TOML: {problem}.{hint}")
 
 
-def _wrong(body: Mapping[str, Any]) -> Iterator[tuple[tuple[str, ...], str, str]]:
-    """What is wrong with the tables of a file: the key, the code and a sentence for each problem."""
+def _wrong(body: Mapping[str, Any], written: Mapping[str, str]) -> Iterator[tuple[tuple[str, ...], str, str]]:
+    """What is wrong with the tables of a file: the key, the code and a sentence for each problem.
+
+    `written` has the words that the file has in place of keys.
+    """
     for key, value in body.items():
         if key == BIND:
             yield from _wrong_bindings(value)
@@ -254,7 +258,7 @@ def _wrong(body: Mapping[str, Any]) -> Iterator[tuple[tuple[str, ...], str, str]
         elif key not in PROJECT_KEYS:
             yield (key,), "SC-P02", f"There is no key {key!r}; the keys are {', '.join([*PROJECT_KEYS, BIND])}."
         elif wrong := PROJECT_KEYS[key].wrong(value):
-            yield (key,), "SC-P03", f"The key {key!r} {wrong}."
+            yield (key,), "SC-P03", f"The key {written.get(key, key)!r} {wrong}."
     if "ads" in body and "endpoint" in body:
         yield ("endpoint",), "SC-P04", "The keys 'ads' and 'endpoint' name two ecologies; give one of them."
 

@@ -81,6 +81,9 @@ def test_a_key_may_be_called_as_the_library_calls_it(tmp_path: Path, monkeypatch
     ((line, _, code, said),) = problems('ontology = "."\nontologies = "."\n', tmp_path)
     assert (line, code) == (2, "SC-P02")
     assert said == "The key 'ontologies' is another word for 'ontology'; give one of them."
+    ((line, _, code, said),) = problems("endpoints = []\n", tmp_path)
+    assert (line, code) == (1, "SC-P03")
+    assert said == "The key 'endpoints' takes a text in quotes, or a list of them."
 
 
 def test_a_byte_that_is_no_utf_8_is_named_where_it_stands(tmp_path: Path) -> None:
