@@ -6,12 +6,14 @@ import sys
 
 import pytest
 
+from tests.harness.effort import thorough
 from tests.serve.chromium import CHROMIUM
 
 pytest.importorskip("starlette", reason="the extra `serve` is not installed")
 pytestmark = [
     pytest.mark.process,
     pytest.mark.slow,
+    thorough,
     pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium; SELFCONF_CHROMIUM names one"),
 ]
 
