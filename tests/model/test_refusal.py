@@ -12,6 +12,7 @@ from selfconf.model.refusal import (
     Contradiction,
     DerivationStep,
     InputUnfed,
+    MisnamedPort,
     Reason,
     Refusal,
     TooFewDistinct,
@@ -146,6 +147,30 @@ def test_what_could_be_recruited_if_it_were_fed_itself_is_not_said_to_be_missing
 ) -> None:
     step = DerivationStep(MIND, CAP, 0, "picture", WantedSignal((IMAGE,)), sources, recruits=True)
     assert str(step) == f"cap cannot play the role mind, as {lack}"
+
+
+@pytest.mark.parametrize(
+    ("meant", "known", "said"),
+    [
+        ("pose", ("pose",), '(did you mean "pose"?)'),
+        (None, (), "(there is none)"),
+        (None, ("pose",), '(there is "pose")'),
+        (None, ("image", "pose"), '(there are "image" and "pose")'),
+    ],
+)
+def test_a_port_that_no_candidate_has_is_told_with_what_may_be_meant(
+    meant: str | None, known: tuple[str, ...], said: str
+) -> None:
+    misnamed = str(MisnamedPort(EYE, "output", "posse", meant, known))
+    assert misnamed == f'no candidate of eye has the output "posse" that an interaction names {said}'
+
+
+@pytest.mark.parametrize(
+    ("smallest", "irreducible", "proved"),
+    [(True, True, "smallest"), (False, True, "irreducible"), (False, False, "unproved")],
+)
+def test_a_refusal_says_what_is_proved_of_its_reasons(smallest: bool, irreducible: bool, proved: str) -> None:
+    assert Refusal(EYE, (), smallest=smallest, irreducible=irreducible).minimality == proved
 
 
 def test_no_answer_is_true() -> None:
