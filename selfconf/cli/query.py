@@ -23,6 +23,7 @@ from selfconf.cli.options import (
 )
 from selfconf.cli.terminal import complain, display
 from selfconf.errors import AuthorError
+from selfconf.model.wording import counted
 
 if TYPE_CHECKING:
     from selfconf.query import Shown
@@ -104,7 +105,7 @@ def _add_past(dataset: Dataset, folder: Path) -> None:
 def _told(shown: Shown, rows: int) -> int:
     display(shown.text)
     if shown.cut:
-        complain(f"there are more than {rows} rows; ask for less, or for more by --rows")
+        complain(f"there are more than {counted(rows, 'row')}; ask for less, or for more by --rows")
     if shown.remark:
         complain(shown.remark)
     return 0

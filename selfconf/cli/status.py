@@ -12,7 +12,7 @@ from selfconf.cli.options import add_ecology_arguments, add_format_argument, com
 from selfconf.cli.tasks import code_of_tasks
 from selfconf.cli.terminal import STATE_COLOURS, complain, display, display_json, paint
 from selfconf.model.term import IRI
-from selfconf.model.wording import one_line
+from selfconf.model.wording import counted, one_line
 
 if TYPE_CHECKING:
     from selfconf.api.living.living_ecology import LivingEcology
@@ -104,7 +104,7 @@ def _lines(status: Status, deployed: Mapping[str, Any] | None, names: Names) -> 
     for lost, cause in status.lost.items():
         yield f"  lost: {names(IRI.unchecked(lost))} ({cause})"
     for slow, count in status.dropped.items():
-        yield f"  too slow: {names(IRI.unchecked(slow))} has passed over {count} signals"
+        yield f"  too slow: {names(IRI.unchecked(slow))} has passed over {counted(count, 'signal')}"
     yield from (f"  {line}" for line in disobedience_text(dict.fromkeys(status.owed, ""), names))
 
 

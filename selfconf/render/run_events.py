@@ -66,7 +66,7 @@ def sentence(event: RunEvent, name: Name) -> str:
         facts["components"] = counted(event.components, "component")
         facts["missing"] = "".join(f"; site {site} did not answer in full" for site in event.missing[:MANY])
         if len(event.missing) > MANY:
-            facts["missing"] += f"; nor did {len(event.missing) - MANY} others"
+            facts["missing"] += f"; nor did {counted(len(event.missing) - MANY, 'other')}"
     return SENTENCES[event.act].format(**facts)
 
 
@@ -114,7 +114,7 @@ def _word(value: object, name: Name) -> object:
     if isinstance(value, IRI):
         return name(value)
     if isinstance(value, tuple):
-        more = f" and {len(value) - MANY} others" if len(value) > MANY else ""
+        more = f" and {counted(len(value) - MANY, 'other')}" if len(value) > MANY else ""
         return ", ".join(map(str, value[:MANY])) + more or "no site"
     return one_line(value) if isinstance(value, str) else value  # the name of a port is any text
 

@@ -167,7 +167,7 @@ def refusal_text(refusal: Refusal, name: Name) -> str:
         lines.append("  no time was left to find out why; allow more")
     lines += [_placed(f"  because {reason}", reason) for reason in refusal.reasons[:MOST_LINES]]
     if len(refusal.reasons) > MOST_LINES:
-        lines.append(f"  and {len(refusal.reasons) - MOST_LINES} more reasons")
+        lines.append(f"  and {counted(len(refusal.reasons) - MOST_LINES, 'more reason')}")
     if refusal.reasons and refusal.minimality in NOT_PROVED:
         lines.append(f"  {NOT_PROVED[refusal.minimality]}")
     if refusal.near_misses:
@@ -195,7 +195,7 @@ def _repairs(refusal: Refusal) -> Iterator[str]:
 
 def _missing(sites: Sequence[str]) -> list[str]:
     """The sites that may have what is lacking."""
-    more = [f"and {len(sites) - MOST_LINES} other sites did not either"] if len(sites) > MOST_LINES else []
+    more = [f"and {counted(len(sites) - MOST_LINES, 'other site')} did not either"] if len(sites) > MOST_LINES else []
     return [*(f"the site {site} did not answer in full" for site in sites[:MOST_LINES]), *more]
 
 

@@ -175,4 +175,4 @@ def test_what_was_cut_is_said_on_stderr(capsys: pytest.CaptureFixture[str]) -> N
     assert main(["query", "SELECT ?c { ?c a sc:Component }", "--ads", str(example), "--rows", "1"]) == 0
     said = capsys.readouterr()
     assert len(said.out.splitlines()) == 3
-    assert "more than 1 rows" in said.err
+    assert "more than 1 row;" in said.err

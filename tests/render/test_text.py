@@ -152,6 +152,17 @@ def test_a_refusal_fits_on_a_screen_however_many_reasons_it_has() -> None:
     assert len(lines) < 4 * MOST_LINES
 
 
+def test_what_is_left_out_of_a_refusal_is_counted() -> None:
+    reasons = tuple(TooFewEligible(term(f"r{number}"), 1, 0) for number in range(MOST_LINES + 1))
+    sites = tuple(f"s{number}" for number in range(MOST_LINES + 1))
+    misses = tuple(NearMiss(SOURCE, term(f"c{number}"), MISS.obstacle) for number in range(MOST_LINES))
+    text = refusal_text(Refusal(TEMPLATE, reasons, misses, missing_sites=sites), NAMES)
+    assert "  and 1 more reason\n" in text
+    assert text.endswith("and 1 other site did not either")
+    assert text.count("more") == 1
+    assert "what would mend it" not in text
+
+
 def test_a_refusal_without_reasons_says_that_there_was_no_time() -> None:
     assert refusal_text(Refusal(TEMPLATE, ()), NAMES).splitlines() == [
         "no configuration for :tell",

@@ -13,6 +13,7 @@ from selfconf.model.literal_values import plain_number, truth
 from selfconf.model.profile import Place
 from selfconf.model.template import Role, Setting
 from selfconf.model.term import IRI, Literal, Term
+from selfconf.model.wording import counted
 from selfconf.rdf.shacl import ONLY_WITH_A_PATH, component_parameters, misfit
 from selfconf.rdf.tasks.mistakes import DocumentReader, worded
 from selfconf.rdf.turtle import Document, Node, Triple
@@ -49,7 +50,7 @@ class _RoleReader(DocumentReader):
         least = 1 if minimum is None else minimum
         most = 1 if minimum is None and maximum is None else maximum
         if most is not None and least > most:
-            problem = f"the role {worded(name)} asks for at least {least} and at most {most} components"
+            problem = f"the role {worded(name)} asks for at least {least} and at most {counted(most, 'component')}"
             raise self.mistake(problem, name, SC.minCount, *self.document.values(name, SC.minCount))
         types = tuple(value for value in self.document.values(name, SH["class"]) if isinstance(value, IRI))
         return Role(name, least, most, self._settings(name), types, self._recruits(name), Place(self.document.source))
