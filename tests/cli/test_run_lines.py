@@ -85,8 +85,9 @@ def test_of_what_has_crashed_it_is_told_once_where_its_last_words_are(capsys: py
     report = TextLines(sc.template(CLOCK), "--ecology mine")
     for cause in ("fail", "crash", "crash"):
         report(ComponentLost(SCREEN if cause == "crash" else ROLE, cause, ""))
-    hints = [line for line in capsys.readouterr().err.splitlines() if "selfconf log" in line]
-    assert [hint.strip() for hint in hints] == ["`selfconf log screen --ecology mine` shows what it has printed"]
+    lines = capsys.readouterr().err.splitlines()
+    hints = {number: line.strip() for number, line in enumerate(lines) if "selfconf log" in line}
+    assert hints == {2: "`selfconf log screen --ecology mine` shows what it has printed"}
 
 
 def test_what_takes_long_is_told_as_it_begins(capsys: pytest.CaptureFixture[str]) -> None:

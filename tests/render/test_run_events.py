@@ -27,6 +27,7 @@ from selfconf.model.run_event import (
     TaskStopped,
     TaskWaiting,
 )
+from selfconf.model.wording import MANY
 from selfconf.render.names import short
 from selfconf.render.run_events import SENTENCES, details, event_body, log_hint, lost_sentences, sentence
 from tests.render.answers import CLOCK, CONFIGURATION, NAMES, REFUSAL, SCREEN, TEMPLATE
@@ -92,6 +93,15 @@ def test_every_event_has_a_body_with_act_time_message_process_and_its_facts(kind
 def test_a_component_that_others_share_is_not_said_to_be_off() -> None:
     assert sentence(ComponentReleased(CLOCK, "done"), short).strip() == "clock is off"
     assert sentence(ComponentReleased(CLOCK, "done", "patrol"), short).strip() == "clock acts on for the task patrol"
+
+
+@pytest.mark.parametrize(("more", "said"), [(0, ""), (1, "; nor did 1 other"), (2, "; nor did 2 others")])
+def test_of_very_many_sites_the_rest_is_counted(more: int, said: str) -> None:
+    sites = tuple(f"s{number}" for number in range(MANY + more))
+    silent = "".join(f"; site {site} did not answer in full" for site in sites[:MANY])
+    assert sentence(EcologyDiscovered(1, (), sites), short).endswith(f"at no site{silent}{said}")
+    found = sentence(EcologyDiscovered(1, sites, ()), short)
+    assert found.endswith(f", s{MANY - 1}" + said.replace("; nor did", " and"))
 
 
 def test_each_sentence_belongs_to_an_event() -> None:
