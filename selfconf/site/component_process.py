@@ -18,6 +18,10 @@ MOST_WATCHED = 8
 """Of how many components of a process the lives are followed: they share a process, and if that hangs, they all do."""
 
 
+SEEN_BY_ALL = 1.0
+"""Seconds for which a component must have lived before all that wait for it count as having seen that."""
+
+
 class CountedAs(Enum):
     """What the end of a process, which may be still to come, was counted as."""
 
@@ -60,9 +64,9 @@ class ComponentProcess:
         return any(watch.lived for watch in self._watches.values())
 
     @property
-    def lives(self) -> bool:
-        """Whether one of its components has a life."""
-        return any(watch.alive for watch in self._watches.values())
+    def is_waited_for(self) -> bool:
+        """Whether it was asked for while it ran, and what has asked may not have seen its components live since."""
+        return self.asked_for and all(watch.lives_for < SEEN_BY_ALL for watch in self._watches.values())
 
     def is_life(self, component: IRI, life: str) -> bool:
         """Whether a life of a component is its own, as far as is known."""

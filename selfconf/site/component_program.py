@@ -171,7 +171,7 @@ class ComponentProgram:
         elif self._ending is not None:
             self._ending.when_gone.append(gone)
         else:
-            again = self._process.asked_for and not self._process.lives and not wanted
+            again = self._process.is_waited_for and not wanted
             if wanted:
                 self._process.counted_as = CountedAs.WANTED
             self._begin_ending(self._process, _Ending(self._bus.now(), again, [gone]))

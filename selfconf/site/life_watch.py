@@ -34,7 +34,7 @@ class LifeWatch:
         self._lives: set[str] = set()
         self._had: set[str] = set()
         """The lives that the component has had since the process began."""
-        self._lifeless_since = bus.now()
+        self._lifeless_since = self._living_since = bus.now()
         self._unanswered_since: float | None = None
         self._closed = False
         self._unwatch = bus.watch(keys.lives(profile.component), self._life_changed)
@@ -49,6 +49,11 @@ class LifeWatch:
     def alive(self) -> bool:
         """Whether the component has a life."""
         return bool(self._lives)
+
+    @property
+    def lives_for(self) -> float:
+        """For how many seconds the component has had a life; zero if it has none."""
+        return self._bus.now() - self._living_since if self._lives else 0.0
 
     @property
     def lived(self) -> bool:
@@ -88,6 +93,7 @@ class LifeWatch:
 
     def _life_changed(self, key: str, alive: bool) -> None:
         if alive:
+            self._living_since = self._living_since if self._lives else self._bus.now()
             self._lives.add(life_of(key))
             self._had.add(life_of(key))
         else:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,7 @@ from selfconf.model.profile import Profile
 from selfconf.model.term import IRI
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Cause, Fail
+from selfconf.site.component_process import SEEN_BY_ALL
 from selfconf.site.component_program import ComponentProgram
 
 if TYPE_CHECKING:
@@ -34,6 +36,8 @@ class SimulatedProcesses:
         """The node of each process that is to run; None while it begins."""
         self._asked_for: set[MemoryBus] = set()
         """The nodes of processes that were asked for while they ran: a task saw no life of them."""
+        self._awake_since: dict[MemoryBus, float] = {}
+        """When the node of each process that is awake was found so."""
         self._restarts: dict[str, int] = {}
         self.by_component: Mapping[IRI, ComponentProgram] = {}
         """None: a process in simulated time has the ports that are advertised."""
@@ -56,7 +60,8 @@ class SimulatedProcesses:
             (run,) = (one for one in self._history.processes if one.node is node)
             if life and run.runtime.life != life:
                 raise PeerError(f"this site has not started the life {life} of {component}")
-            if node not in self._asked_for or run.awake:
+            seen = run.awake and self._history.network.time - self._awake_since.get(node, math.inf) > SEEN_BY_ALL
+            if node not in self._asked_for or seen:
                 del self._nodes[name]
             node.close()
         ended()
@@ -89,6 +94,10 @@ class SimulatedProcesses:
             return
         self._nodes[name] = node
         if node is not None and node.open:
+            if node.paused:
+                self._awake_since.pop(node, None)
+            else:
+                self._awake_since.setdefault(node, self._history.network.time)
             self._history.network.after(CHECK, lambda: self._watch(name, node))
         elif self._restarts[name] < RESTARTS and self._site.open:
             self._restarts[name] += 1

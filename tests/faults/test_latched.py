@@ -38,6 +38,7 @@ BROKEN_ONCE = {
     "an actuator that was cut off is reserved anew, and its source acts for another task": Recipe(
         9554465, LATCHED, large=True
     ),
+    "a site ends for one task what another waits for, as it goes on": Recipe(3640000133, LATCHED),
 }
 
 

@@ -17,6 +17,7 @@ from selfconf.errors import PeerError
 from selfconf.protocol.codec import encode
 from selfconf.protocol.messages import Wake
 from selfconf.site import Site, component_program, life_watch, restart_limit
+from selfconf.site.component_process import SEEN_BY_ALL
 from selfconf.termination import alive
 from tests.lab import iri
 from tests.site.served import KEYS, SLEEPER, ask, dormant, live, python
@@ -305,8 +306,9 @@ def test_what_has_crashed_begins_again_though_a_task_wants_the_life_of_before_to
     assert len(heard) == 1
 
 
+@pytest.mark.parametrize("shows", [False, True], ids=["and sees no life", "and has not seen yet that it lives again"])
 def test_what_is_ended_for_one_task_begins_again_for_another_that_waits_for_it(
-    network: Network, tmp_path: Path, site: Callable[..., Site]
+    network: Network, tmp_path: Path, site: Callable[..., Site], shows: bool
 ) -> None:
     made = site(python(NUMBERED))
     made.start(SLEEPER)
@@ -318,6 +320,9 @@ def test_what_is_ended_for_one_task_begins_again_for_another_that_waits_for_it(
     os.kill(runs(tmp_path)[-1], signal.SIGSTOP)
     leave()
     network.run(lambda: False, 0.1)
+    if shows:
+        network.node().announce(KEYS.life(SLEEPER, life))
+        network.run(lambda: False, 0.1)
     made.processes.end(SLEEPER, life, lambda: ended.append(True))
     assert live(network, lambda: len(runs(tmp_path)) == 2)
     assert ended
@@ -331,7 +336,7 @@ def test_what_is_ended_while_it_lives_is_waited_for_by_no_task(
     made.start(SLEEPER)
     assert live(network, lambda: len(runs(tmp_path)) == 1)
     network.node().announce(KEYS.life(SLEEPER, given_life(made)))
-    network.run(lambda: False, 0.1)
+    network.run(lambda: False, SEEN_BY_ALL + 0.1)
     made.processes.end(SLEEPER, given_life(made))
     assert live(network, lambda: program(made).group is None)
     assert not live(network, lambda: len(runs(tmp_path)) == 2, 0.5)
