@@ -115,6 +115,24 @@ def test_the_shape_is_the_role_alone_with_the_prefixes_of_its_file() -> None:
     assert f"@prefix : <{iri('')}> ." in shape
 
 
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ('"1"^^xsd:integer', '"x"^^xsd:integer'),
+        ('"2024-01-01"^^xsd:date', '"1"^^xsd:integer'),
+    ],
+)
+def test_the_query_of_a_datatype_finds_what_is_of_it(right: str, wrong: str) -> None:
+    found = read(f"sh:property [ sh:path :p ; sh:minCount 1 ; sh:datatype {right.rpartition('^')[2]} ]")
+    literals = (right, '"no literal of the datatype"', wrong)
+    ads = PREFIXES + " ".join(f":c{n} a sc:Component, :Lamp ; :p {one} ." for n, one in enumerate(literals))
+    dataset = Dataset()
+    dataset.add_advertisements(read_advertisements(ads.encode(), "a.ttl")[0])
+    answer = dataset.query(role_query(found))
+    assert isinstance(answer, ox.QuerySolutions)
+    assert [row["component"].value for row in answer] == [iri("c0")]
+
+
 IN_LIST = "sh:property [ sh:path :colour ; sh:in ( :robot ) ]"
 
 
