@@ -8,6 +8,7 @@ near it comes, by degree of match and by words, is `model.nearness`.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
 from itertools import filterfalse
 
 from selfconf.composition.composer import Composer
@@ -16,7 +17,7 @@ from selfconf.model.immutable import replace
 from selfconf.model.nearness import ranked
 from selfconf.model.obstacle import NoAlternative, UnfitOutput, UnlikePorts, WrongType
 from selfconf.model.partition import NearMiss
-from selfconf.model.port_likeness import PortLikeness
+from selfconf.model.port_likeness import PortLikeness, WantedPorts
 from selfconf.model.profile import Condition, Input, Output, Profile
 from selfconf.model.refusal import Refusal, TooFewEligible
 from selfconf.model.requirement import InputFed
@@ -36,6 +37,9 @@ from selfconf.search.wanted_along import ways_along_interactions
 
 MOST_NEAR = 2_000
 """How many near misses a refusal has for one role at most."""
+MOST_COMPARED = 1_000_000
+"""How many pairs of ports are compared to find what issues something akin to what is wanted, which takes two seconds:
+where inputs of hundreds of roles stay unfed, only the first roles that could feed them have such near misses."""
 
 
 def ranked_near_misses(
@@ -52,6 +56,7 @@ def ranked_near_misses(
     unfed = [r for reason in refusal.reasons for r in reason.requirements if isinstance(r, InputFed)]
     slips: list[NearMiss] = []
     found: list[NearMiss] = []
+    left = MOST_COMPARED
     for number, role in enumerate(problem.roles):
         near = _NearRole(composer, ecology, problem, number, signals)
         misses = [miss for miss in refusal.near_misses if miss.role == role.iri]
@@ -62,8 +67,9 @@ def ranked_near_misses(
             misses += filterfalse(_is_slip, by_type)
         if role.iri in short or not short:
             misses += near.kept_out()
-        misses += near.feeding_nothing([need for need in unfed if number in _sources(problem, need.role)])
+        misses += near.feeding_nothing(unfed, left)
         found += near.ranked(misses)[:MOST_NEAR]
+        left -= near.compared
     return (*slips, *found)
 
 
@@ -108,11 +114,6 @@ def untaken_request(operation: Output, wanted: Condition) -> tuple[IRI | None, I
     return operation.request, wanted.sent.type
 
 
-def _sources(problem: Problem, sink: IRI) -> tuple[int, ...]:
-    """The roles, by number, that feed a role."""
-    return problem.sources[next(number for number, role in enumerate(problem.roles) if role.iri == sink)]
-
-
 class _NearRole:
     """What one role asks for, by its shape or along its interactions, and which components come near to it."""
 
@@ -126,9 +127,22 @@ class _NearRole:
     ) -> None:
         self._composer, self._ecology, self._problem, self._number = composer, ecology, problem, number
         self._role = problem.roles[number].iri
+        self._signals = signals
         self._asked = ports_asked(composer.partitioner, self._role)
-        self._ways = [self._asked] if self._asked else ways_along_interactions(problem, number)
-        self._ports = PortLikeness(self._ways, signals, composer.hierarchy) if self._ways else None
+
+    @cached_property  # most roles of a large task are not asked
+    def _ways(self) -> list[WantedPorts]:
+        return [self._asked] if self._asked else ways_along_interactions(self._problem, self._number)
+
+    @cached_property
+    def _ports(self) -> PortLikeness | None:
+        return PortLikeness(self._ways, self._signals, self._composer.hierarchy) if self._ways else None
+
+    @property
+    def compared(self) -> int:
+        """How many pairs of ports have been compared."""
+        ports = self.__dict__.get("_ports")
+        return ports.compared if isinstance(ports, PortLikeness) else 0
 
     def kept_out(self) -> Iterator[NearMiss]:
         """The components that only their ports keep out of the role."""
@@ -139,10 +153,17 @@ class _NearRole:
         for one in kept_out_by_ports(self._composer.partitioner, self._role, ecology, inside):
             yield NearMiss(self._role, one.profile.component, self._ports.of(one.profile.ports)[1], one.allows)
 
-    def feeding_nothing(self, unfed: Sequence[InputFed]) -> Iterator[NearMiss]:
-        """The candidates that feed none of some inputs, but issue what is akin to it, or the same in other units."""
-        for candidate in self._problem.candidates[self._number] if unfed and self._ports else ():
-            obstacle = self._unfit(candidate.profile, unfed) or self._unlike(candidate.profile, unfed)
+    def feeding_nothing(self, unfed: Sequence[InputFed], most: int) -> Iterator[NearMiss]:
+        """The candidates that feed none of some inputs, but issue what is akin to it, or the same in other units.
+
+        No further ones are looked at once so many pairs of ports have been compared.
+        """
+        sinks = {self._problem.roles[number].iri for number in self._problem.sinks[self._number]}
+        needs = [need for need in unfed if need.role in sinks]
+        for candidate in self._problem.candidates[self._number] if needs and most > 0 and self._ports else ():
+            if self.compared > most:
+                return
+            obstacle = self._unfit(candidate.profile, needs) or self._unlike(candidate.profile, needs)
             if obstacle is not None:
                 yield NearMiss(self._role, candidate.profile.component, obstacle)
 
@@ -188,6 +209,8 @@ class _NearRole:
     def ranked(self, misses: Iterable[NearMiss]) -> list[NearMiss]:
         """Near misses of the role, the nearest first; of several of one component the last."""
         of = {miss.component: miss for miss in misses}
+        if not of:
+            return []
         profiles = [self._ecology[component].profile for component in of]
         question = words_of_role(self._composer.task.document, self._role, next(iter(self._ways), None))
         found = [

@@ -30,8 +30,10 @@ RECRUITS_NAMED = 8
 """How many components are named that could nearly be recruited for an input."""
 RECRUITING_ROLES = 4
 """Of how many roles it is tried whether they would better recruit."""
-RECRUITING_STEPS = 100_000
-"""Steps for the question whether there is a solution where a role recruits."""
+RECRUITING_STEPS = 10_000
+"""Steps for the question whether there is a solution where a role recruits, a quarter of a second."""
+COMPILED_ROLES = 400
+"""How many roles are compiled anew to try that, a second: all of the template for each one that would recruit."""
 
 
 def with_recruit_near_misses(
@@ -144,8 +146,9 @@ def with_recruiting_instead(composer: Composer, ecology: Mapping[IRI, Advertisem
     unfed = dict.fromkeys(r.role for one in refusal.reasons for r in one.requirements if isinstance(r, InputFed))
     asked = [iri for iri in unfed if not template.role(iri).recruits]
     found: list[LetRecruit] = []
-    stopped = len(asked) > RECRUITING_ROLES
-    for iri in asked[:RECRUITING_ROLES]:
+    tried = asked[: max(1, min(RECRUITING_ROLES, COMPILED_ROLES // len(template.roles)))]
+    stopped = len(asked) > len(tried)
+    for iri in tried:
         roles = tuple(replace(role, recruits=True) if role.iri == iri else role for role in template.roles)
         task = replace(composer.task.task, template=replace(template, roles=roles))
         changed = Composer(replace(composer.task, task=task), composer.hierarchy, steps=composer.steps)

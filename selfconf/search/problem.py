@@ -82,6 +82,8 @@ class Problem:
         """For each role, the roles that feed it."""
         self._feeding: dict[int, dict[str | None, Sources]] = {}
         """For each role that was asked about what may feed its inputs, by name."""
+        self._served: dict[int, frozenset[IRI]] = {}
+        """For each role that was asked about, the signals that its candidates could serve."""
         self.supply = Supply(partition.recruits, hierarchy)
         self.spared: tuple[Set[WantedSignal], ...] = self._spared()
         """For each role the signals that recruits may supply to its players, so that no role has to."""
@@ -130,6 +132,16 @@ class Problem:
     def _open(self, variable: Variable) -> int:
         is_set = any(p.is_set for p in self.task.template.parameters if p.iri == variable.parameter)
         return (1 << len(variable.domain)) - 1 if is_set or variable.listed else ANY_VALUE
+
+    def served(self, role: int) -> frozenset[IRI]:
+        """Return the signals that the candidates of a role could serve."""
+        known = self._served.get(role)
+        if known is None:
+            outputs = (output for candidate in self.candidates[role] for output in candidate.profile.outputs)
+            known = self._served[role] = frozenset(
+                signal for output in outputs for signal in self.hierarchy.served(output.signals)
+            )
+        return known
 
     def feeding(self, role: int, name: str | None) -> Sources:
         """Return what may feed an input of a role, by its name; None stands for one that no interaction names."""

@@ -10,7 +10,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice, product
 
 from selfconf.model.port_likeness import Types, WantedPorts
-from selfconf.model.term import IRI
 from selfconf.search.problem import Problem
 
 CHOICES_OF_PORTS = 16
@@ -37,12 +36,13 @@ def _joined(choices: Sequence[Sequence[tuple[Types, ...]]]) -> Iterator[tuple[Ty
 def _lacking(problem: Problem, sink: int, role: int) -> Iterator[tuple[Types, ...]]:
     """Yield for the candidates of a sink what its inputs want of a role, as no other role issues it."""
     links = [link for link in problem.links[sink] if link.source == role]
-    others = set(_served(problem, {link.source for link in problem.links[sink]} - {role}))
+    others = [problem.served(source) for source in problem.sources[sink] if source != role]
     return _distinct(
         tuple(
             port.signals
             for port in candidate.profile.required
-            if any(link.input in (None, port.name) for link in links) and others.isdisjoint(port.signals)
+            if any(link.input in (None, port.name) for link in links)
+            and all(served.isdisjoint(port.signals) for served in others)
         )
         for candidate in problem.candidates[sink]
     )
@@ -53,14 +53,6 @@ def _issued(problem: Problem, source: int) -> Iterator[tuple[Types, ...]]:
     return _distinct(
         tuple(port.signals for port in candidate.profile.outputs) for candidate in problem.candidates[source]
     )
-
-
-def _served(problem: Problem, roles: Iterable[int]) -> Iterator[IRI]:
-    """Yield the signals that the candidates of some roles could serve."""
-    for role in roles:
-        for candidate in problem.candidates[role]:
-            for output in candidate.profile.outputs:
-                yield from problem.hierarchy.served(output.signals)
 
 
 def _distinct(choices: Iterable[tuple[Types, ...]]) -> Iterator[tuple[Types, ...]]:

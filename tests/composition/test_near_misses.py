@@ -7,6 +7,7 @@ from functools import lru_cache
 
 import pytest
 
+from selfconf.composition import near_misses
 from selfconf.composition.composer import Composer
 from selfconf.composition.explanation import explained
 from selfconf.composition.near_misses import ranked_exclusions
@@ -134,6 +135,12 @@ def test_for_an_input_that_stays_unfed_those_are_near_that_issue_something_akin(
     ads = PREFIXES + CLIENT % "" + issuing("a", "Colour") + issuing("b", "Fee") + issuing("c", "Taxed")
     found = near(PREFIXES + FEED, ads, *BELOW)
     assert [(miss.role.short, miss.component.short) for miss in found] == [("p", "c"), ("p", "b")]
+
+
+def test_what_is_akin_is_looked_for_until_so_many_pairs_of_ports_are_compared(monkeypatch: pytest.MonkeyPatch) -> None:
+    ads = PREFIXES + CLIENT % "" + issuing("a", "Colour") + issuing("b", "Fee") + issuing("c", "Taxed")
+    monkeypatch.setattr(near_misses, "MOST_COMPARED", 1)
+    assert [miss.component.short for miss in near(PREFIXES + FEED, ads, *BELOW)] == ["b"]
 
 
 def test_another_unit_of_one_dimension_is_near_and_one_of_another_dimension_is_less() -> None:

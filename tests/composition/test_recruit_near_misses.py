@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from selfconf.composition import recruit_near_misses
 from selfconf.composition.composer import Composer
 from selfconf.composition.explanation import explained
 from selfconf.composition.recruit_near_misses import RECRUITING_ROLES
@@ -158,7 +159,13 @@ def test_that_a_role_recruits_is_not_advised_where_it_does_not_help(signal: str)
     assert not [one for one in refusal.repairs if isinstance(one, LetRecruit)]
 
 
-def test_roles_of_which_it_is_not_tried_whether_they_would_better_recruit_are_told_of() -> None:
+@pytest.mark.parametrize(
+    ("compiled", "tried"), [(recruit_near_misses.COMPILED_ROLES, RECRUITING_ROLES), (13, 2), (1, 1)]
+)
+def test_roles_of_which_it_is_not_tried_whether_they_would_better_recruit_are_told_of(
+    compiled: int, tried: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(recruit_near_misses, "COMPILED_ROLES", compiled)
     numbers = range(RECRUITING_ROLES + 1)
     roles = "".join(f":r{k} a sc:Role ; sh:class :K{k} . :s sc:feeds :r{k} .\n" for k in numbers)
     listed = " ".join(f":r{k}" for k in numbers)
@@ -171,5 +178,5 @@ def test_roles_of_which_it_is_not_tried_whether_they_would_better_recruit_are_to
     answer = asked.compose(ecology, frozenset(), None)
     assert isinstance(answer, Refusal)
     told = explained(asked, ecology, answer, None, TimeLimit(None))
-    assert len([one for one in told.repairs if isinstance(one, LetRecruit)]) == RECRUITING_ROLES
+    assert len([one for one in told.repairs if isinstance(one, LetRecruit)]) == tried
     assert told.repairs_stopped

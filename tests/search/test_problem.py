@@ -32,6 +32,16 @@ def test_an_output_without_a_type_that_is_named_feeds_under_every_hierarchy(hier
     assert [(one.output, one.input) for one in answer.connections] == [("o", "i")]
 
 
+def test_what_a_role_could_serve_is_what_lies_above_the_outputs_of_its_candidates() -> None:
+    plain = problem(
+        {"source": [component("a", "", "o:Pose"), component("b", "", "o:Image")], "sink": []}, "source>sink"
+    )
+    above = Problem(plain.task, plain.partition, Hierarchy([(iri("Pose"), iri("Place"))]))
+    assert plain.served(0) == {iri("Pose"), iri("Image")}
+    assert above.served(0) == above.served(0) == {iri("Pose"), iri("Image"), iri("Place")}
+    assert above.served(1) == frozenset()
+
+
 def test_a_parameter_that_several_settings_match_has_one_value() -> None:
     limit, hard = iri("Limit"), iri("HardLimit")
     parameters = OperationalParameter("low", limit), OperationalParameter("high", hard)
