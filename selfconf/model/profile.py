@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 from selfconf.model.immutable import immutable
 from selfconf.model.term import IRI, Term
-from selfconf.model.wording import in_words, is_one_line
+from selfconf.model.wording import in_words, is_one_line, with_article
 
 
 @immutable
@@ -149,7 +149,7 @@ class WantedSignal(NamedTuple):
     @property
     def issued(self) -> str:
         """What a component does that meets it, for people: `issues a Pose`, `offers an operation -> Image`."""
-        return f"offers an {self}" if _calls(self.signals) else f"issues a {self}"
+        return f"{'offers' if _calls(self.signals) else 'issues'} {with_article(str(self))}"
 
     def __str__(self) -> str:
         condition = self.condition or Condition()

@@ -116,5 +116,5 @@ def term_in_words(value: Term) -> str:
 
 
 def with_article(kind: str) -> str:
-    """A datatype or a kind of node with its article: an integer, an IRI."""
+    """A datatype, or a kind of node or signal, with its article: an integer, an IRI, a Pose."""
     return f"{'an' if kind[:1] in tuple('AEIOaeiou') else 'a'} {kind}"

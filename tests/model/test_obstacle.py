@@ -159,8 +159,8 @@ WORDED: list[tuple[Obstacle, str, str]] = [
     ),
     (
         NotFedItself("raw", (IRI("urn:Echo"), IRI("urn:Ping"))),
-        "is not fed itself: no component that can be recruited issues a Echo or Ping for its input 'raw'",
-        "it is not fed itself: no component that can be recruited issues a Echo or Ping for its input 'raw'",
+        "is not fed itself: no component that can be recruited issues an Echo or Ping for its input 'raw'",
+        "it is not fed itself: no component that can be recruited issues an Echo or Ping for its input 'raw'",
     ),
     (
         NotFedItself("raw", (IRI("urn:Echo"),), (IRI("urn:b"), IRI("urn:a")), True),
@@ -169,8 +169,8 @@ WORDED: list[tuple[Obstacle, str, str]] = [
     ),
     (
         NotFedItself("raw", (IRI("urn:Echo"),), (IRI("urn:b"),)),
-        "is not fed itself: b, which issues a Echo for its input 'raw', is not fed either",
-        "it is not fed itself: b, which issues a Echo for its input 'raw', is not fed either",
+        "is not fed itself: b, which issues an Echo for its input 'raw', is not fed either",
+        "it is not fed itself: b, which issues an Echo for its input 'raw', is not fed either",
     ),
     (
         unmet(WrongShareOfValues(1, 2, False), WrongShareOfValues(3, 1, True)),

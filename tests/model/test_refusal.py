@@ -48,7 +48,7 @@ WORDED: list[tuple[Reason, str]] = [
     ),
     (
         UNFED,
-        "the input 'picture' (Image) of cap cannot be fed: no candidate of eye issues a Image for it",
+        "the input 'picture' (Image) of cap cannot be fed: no candidate of eye issues an Image for it",
     ),
     (
         InputUnfed(MIND, CAP, "picture", WantedSignal((IMAGE,)), ()),
@@ -130,7 +130,7 @@ def test_a_reason_about_several_roles_belongs_to_the_first() -> None:
 @pytest.mark.parametrize(("more", "who"), [(0, "cap"), (1, "cap and one other"), (5, "cap and 5 others")])
 def test_what_follows_is_told_with_how_many_leave_for_it(more: int, who: str) -> None:
     step = DerivationStep(MIND, CAP, more, "picture", WantedSignal((IMAGE,)), (EYE,))
-    assert str(step) == f"{who} cannot play the role mind, as no component left in eye issues a Image"
+    assert str(step) == f"{who} cannot play the role mind, as no component left in eye issues an Image"
     told = InputUnfed(MIND, CAP, "picture", WantedSignal((IMAGE,)), (EYE,), consequences=(step, step))
     assert str(told).split("; so ") == [str(UNFED), str(step), str(step)]
 
@@ -138,8 +138,8 @@ def test_what_follows_is_told_with_how_many_leave_for_it(more: int, who: str) ->
 @pytest.mark.parametrize(
     ("sources", "lack"),
     [
-        ((), "no recruit that can be fed itself issues a Image"),
-        ((EYE,), "no component left in eye issues a Image, and no recruit that can be fed itself does"),
+        ((), "no recruit that can be fed itself issues an Image"),
+        ((EYE,), "no component left in eye issues an Image, and no recruit that can be fed itself does"),
     ],
 )
 def test_what_could_be_recruited_if_it_were_fed_itself_is_not_said_to_be_missing(
