@@ -28,7 +28,7 @@ LARGEST_FILE = 64 << 20
 class ValidationReport(Tabular, Report, Sequence[Diagnostic]):
     """A report as the library answers with it: true if all conforms, and a sequence of its problems in order.
 
-    It prints a line for each problem, or a table in a notebook.
+    It prints a line for each problem, as the command does; in a notebook it is a table.
     """
 
     def __bool__(self) -> bool:
@@ -55,6 +55,9 @@ class ValidationReport(Tabular, Report, Sequence[Diagnostic]):
     def _cells(self) -> Iterator[list[str]]:
         for found in self.diagnostics:
             yield [found.file, str(found.line), found.severity.value, found.code, found.message]
+
+    def __str__(self) -> str:
+        return "\n".join(map(str, self.diagnostics)) or repr(self)
 
     def __repr__(self) -> str:
         problems = f"{counted(self.errors, 'error')} and {counted(self.warnings, 'warning')}"

@@ -9,6 +9,7 @@ from dataclasses import field
 from enum import Enum
 
 from selfconf.model.immutable import immutable
+from selfconf.model.wording import one_line, printable
 
 LONGEST_SOURCE = 240
 """Characters of a line that are shown: a file on one line may have a million problems, all of them on that line."""
@@ -52,6 +53,25 @@ class Diagnostic:
     def order(self) -> tuple[str, int, int, str, str]:
         """The order of reports: by file, then by place, then by code."""
         return self.file, self.line, self.column, self.code, self.message
+
+    @property
+    def where(self) -> str:
+        """The place, as compilers write it: `file:line:column`."""
+        return f"{one_line(self.file)}:{self.line}:{self.column}"
+
+    @property
+    def kind(self) -> str:
+        """The severity and the code: `error[CODE]`."""
+        return f"{self.severity.value}[{self.code}]"
+
+    @property
+    def words(self) -> str:
+        """The message on one line; the hint, if there is one, follows it."""
+        words = f"{self.message} {self.hint}" if self.hint else self.message
+        return printable(" ".join(words.split()))
+
+    def __str__(self) -> str:
+        return f"{self.where}: {self.kind}: {self.words}"
 
 
 @immutable

@@ -57,6 +57,11 @@ def client_text(principal: str) -> str:
     return principal or "a client without a trusted certificate"
 
 
+def printable(text: str) -> str:
+    """Text without control characters: a file from somewhere must not steer the terminal that shows it."""
+    return "".join(character if character == "\t" or character.isprintable() else "\ufffd" for character in text)
+
+
 def is_one_line(text: str) -> bool:
     """Whether a text can stand in a line as it is: it steers no terminal, and ends no line."""
     return _is_harmless(text) or _STEERING_OR_BREAKING.search(text) is None

@@ -47,10 +47,12 @@ def test_a_report_prints_its_counts_and_a_line_for_each_problem() -> None:
     report = sc.validate(BAD)
     said = repr(report).splitlines()
     assert said[0] == "<1 error and 1 warning in 1 file>"
+    assert str(report).splitlines() == [str(found) for found in report]
+    assert str(report).startswith(f"{BAD}:")
     assert said[-1].split()[:4] == [str(BAD), "7", "error", "SC-K03"]
     assert "<td style='text-align:left'>SC-K03</td>" in report._repr_html_()
     good = sc.validate("examples/clock")
-    assert repr(good) == "<0 errors and 0 warnings in 3 files>"
+    assert repr(good) == str(good) == "<0 errors and 0 warnings in 3 files>"
     assert good._repr_html_() == "<pre>&lt;0 errors and 0 warnings in 3 files&gt;</pre>"
 
 

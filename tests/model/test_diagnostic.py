@@ -33,3 +33,9 @@ def test_a_file_that_cannot_be_read_is_named() -> None:
 def test_the_text_of_the_line_makes_it_no_other_problem() -> None:
     plain = Diagnostic("a.ttl", 1, 1, "SC-A01", "x")
     assert report([], [plain, Diagnostic("a.ttl", 1, 1, "SC-A01", "x", source="text")]).diagnostics == (plain,)
+
+
+def test_a_diagnostic_prints_as_compilers_do() -> None:
+    one = Diagnostic("a.ttl", 12, 3, "SC-A01", "No\nmore.", hint="Try.")
+    assert str(one) == "a.ttl:12:3: error[SC-A01]: No more. Try."
+    assert (one.where, one.kind, one.words) == ("a.ttl:12:3", "error[SC-A01]", "No more. Try.")

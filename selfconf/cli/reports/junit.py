@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from xml.etree import ElementTree
 
-from selfconf.cli.reports.text import line
 from selfconf.model.diagnostic import Report, Severity
 
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -37,11 +36,11 @@ def _add_case(suite: ElementTree.Element, file: str, report: Report) -> None:
         first = errors[0].message if errors else "cannot be read"
         code = errors[0].code if errors else "SC-S03"
         outcome = ElementTree.SubElement(case, kind, {"message": _xml(first), "type": code})
-        outcome.text = _xml("\n".join(line(diagnostic) for diagnostic in errors))
+        outcome.text = _xml("\n".join(map(str, errors)))
     warnings = [diagnostic for diagnostic in found if diagnostic.severity is Severity.WARNING]
     if warnings:
         output = ElementTree.SubElement(case, "system-out")
-        output.text = _xml("\n".join(line(diagnostic) for diagnostic in warnings))
+        output.text = _xml("\n".join(map(str, warnings)))
 
 
 def _xml(text: str) -> str:

@@ -6,24 +6,19 @@ from __future__ import annotations
 
 from selfconf.cli.terminal import paint
 from selfconf.model.diagnostic import Diagnostic, Report, Severity
-from selfconf.model.wording import counted, one_line
+from selfconf.model.wording import counted, printable
 
 _COLOURS = {Severity.ERROR: "red", Severity.WARNING: "yellow"}
 
 
 def render(report: Report) -> str:
     """The problems in order, a line each; nothing if there are none."""
-    return "".join(f"{line(found)}\n" for found in report.diagnostics)
+    return "".join(f"{found}\n" for found in report.diagnostics)
 
 
 def illustrate(report: Report) -> str:
     """The problems for a terminal: in colour, with the line of the file underlined below each."""
     return "".join(f"{_coloured(found)}\n{_underlined(found)}" for found in report.diagnostics)
-
-
-def line(found: Diagnostic) -> str:
-    """One problem on one line; the hint, if there is one, follows the message."""
-    return f"{_place(found)}: {_kind(found)}: {_words(found)}"
 
 
 def summary(report: Report) -> str:
@@ -42,21 +37,8 @@ def _conforming(files: str, number: int) -> str:
     return f"{files} conform{'s' * (number == 1)}"
 
 
-def _place(found: Diagnostic) -> str:
-    return f"{one_line(found.file)}:{found.line}:{found.column}"
-
-
-def _kind(found: Diagnostic) -> str:
-    return f"{found.severity.value}[{found.code}]"
-
-
-def _words(found: Diagnostic) -> str:
-    words = f"{found.message} {found.hint}" if found.hint else found.message
-    return _visible(" ".join(words.split()))
-
-
 def _coloured(found: Diagnostic) -> str:
-    return f"{_place(found)}: {paint(_kind(found), _COLOURS[found.severity])}: {_words(found)}"
+    return f"{found.where}: {paint(found.kind, _COLOURS[found.severity])}: {found.words}"
 
 
 def _underlined(found: Diagnostic) -> str:
@@ -67,9 +49,4 @@ def _underlined(found: Diagnostic) -> str:
     before = "".join("\t" if character == "\t" else " " for character in found.source[: column - 1])
     mark = "^" * max(1, min(found.width, len(found.source) - column + 1))
     below = f"{' ' * len(number)} | {before}{paint(mark, _COLOURS[found.severity])}"
-    return f"{number} | {_visible(found.source)}\n{below}\n"
-
-
-def _visible(words: str) -> str:
-    """Without control characters: a file from somewhere must not steer the terminal that shows it."""
-    return "".join(character if character == "\t" or character.isprintable() else "�" for character in words)
+    return f"{number} | {printable(found.source)}\n{below}\n"

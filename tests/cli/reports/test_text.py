@@ -7,7 +7,7 @@ import re
 import pytest
 
 from selfconf.cli.reports import RENDERERS
-from selfconf.cli.reports.text import illustrate, line, summary
+from selfconf.cli.reports.text import illustrate, summary
 from selfconf.model.diagnostic import Diagnostic, Severity, report
 from tests.cli.diagnosed import NASTY
 
@@ -28,13 +28,12 @@ ELSEWHERE = Diagnostic("empty", 1, 1, "SC-S04", "Nothing.", Severity.WARNING)
 
 
 def test_a_problem_is_one_line_with_its_hint_whatever_is_in_it() -> None:
-    assert line(ERROR) == "a.ttl:12:3: error[SC-A01]: No. Try."
+    assert str(ERROR) == "a.ttl:12:3: error[SC-A01]: No. Try."
     assert (
-        line(Diagnostic("a.ttl", 1, 1, "SC-A01", "two\nlines\t and \x07"))
-        == "a.ttl:1:1: error[SC-A01]: two lines and �"
+        str(Diagnostic("a.ttl", 1, 1, "SC-A01", "two\nlines\t and \x07")) == "a.ttl:1:1: error[SC-A01]: two lines and �"
     )
-    assert line(Diagnostic("a\n::b\x1b.ttl", 1, 1, "SC-A01", "No.")) == r"a\n::b\x1b.ttl:1:1: error[SC-A01]: No."
-    assert RENDERERS["text"](report(["a.ttl"], [WARNING, ERROR])).splitlines() == [line(ERROR), line(WARNING)]
+    assert str(Diagnostic("a\n::b\x1b.ttl", 1, 1, "SC-A01", "No.")) == r"a\n::b\x1b.ttl:1:1: error[SC-A01]: No."
+    assert RENDERERS["text"](report(["a.ttl"], [WARNING, ERROR])).splitlines() == [str(ERROR), str(WARNING)]
 
 
 @pytest.mark.parametrize(
