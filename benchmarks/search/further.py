@@ -48,7 +48,7 @@ time is written as `>`. Ratios are of those instances that take selfconf or the 
 
 The families `choosing` are those on which ideas and thresholds of the search were chosen; `reporting` were only
 measured; `unseen` were made after the search was finished, and those called `later`, `last`, `newest`,
-`installations`, `tasks` and `packings` once more each, to choose on and to measure. [The log of
+`installations`, `tasks`, `packings` and `rosters` once more each, to choose on and to measure. [The log of
 experiments](../search-log.md) says why it lost, and what helped."""
 
 

@@ -11,6 +11,9 @@ from benchmarks.search.families.wiring import counted, iri, made, profile
 from selfconf.model.partition import ANY_VALUE, Candidate, Variable
 from selfconf.search.problem import Problem
 
+NEAR = 0.25
+"""From how near a sensor watches a place, where the square has sides of 1."""
+
 
 def cover(signals: int, stations: int, most: int, share: float, seed: int) -> Problem:
     """So many stations of a role that together issue all the signals that one sink wants."""
@@ -18,6 +21,24 @@ def cover(signals: int, stations: int, most: int, share: float, seed: int) -> Pr
     some = [[s for s in range(signals) if rng.random() < share] for _ in range(stations)]
     parts = [Candidate(profile(f"station{k:03}", (), issued)) for k, issued in enumerate(some)]
     return counted([parts, [Candidate(profile("sink", range(signals)))]], [most, 1], [(0, 1)])
+
+
+def watched(places: int, sensors: int, most: int, times: int, seed: int) -> Problem:
+    """So many of some sensors in a square that each of some places is near to several of them."""
+    rng = random.Random(seed)
+    stand = [(rng.random(), rng.random()) for _ in range(sensors)]
+    parts = [[Candidate(profile(f"sensor{k:02}", (), [f"on{k}"])) for k in rng.sample(range(sensors), sensors)]]
+    for place in range(places):
+        here = rng.random(), rng.random()
+        by_distance = sorted(range(sensors), key=lambda sensor: math.dist(here, stand[sensor]))
+        near = [sensor for sensor in by_distance if math.dist(here, stand[sensor]) < NEAR]
+        parts.append(
+            [
+                Candidate(profile(f"place{place:02}.{sensor:02}", [f"on{sensor}"]))
+                for sensor in sorted(near if len(near) > times else by_distance[: times + 1])
+            ]
+        )
+    return counted(parts, [most] + [times] * places, [(0, 1 + place) for place in range(places)])
 
 
 def tiling(side: int, holes: int, seed: int, fair: bool = True) -> Problem:

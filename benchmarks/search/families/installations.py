@@ -307,3 +307,35 @@ def voters(groups: int, makes: int, signals: int, seed: int) -> Problem:
         wanted = [some("v", 2) + [f"q{one}" for one in rng.sample(range(4), 2)] for _ in range(6)]
         parts.append([Candidate(profile(f"voter{group:02}.{k}", one)) for k, one in enumerate(wanted)])
     return counted(parts, [2, 3, 1] * groups, edges)
+
+
+def machines(services: int, number: int, cores: int, modules: int, seed: int) -> Problem:
+    """Services that each take one to three cores in a row, and as many modules of memory, of one of three machines.
+
+    A free parameter for each core and module of the `number` of machines says which service has it.
+    """
+    rng = random.Random(seed)
+    kinds = {"core": cores, "module": modules}
+    units = [*((kind, machine, k) for kind, most in kinds.items() for machine in range(number) for k in range(most))]
+    place = {unit: n for n, unit in enumerate(units)}
+    left = {(kind, machine): most for kind, most in kinds.items() for machine in range(number)}
+    parts = []
+    for service in range(services):
+        free = [m for m in range(number) if all(left[kind, m] for kind in kinds)] or list(range(number))
+        home = rng.choice(free)
+        taken = {kind: max(1, min(left[kind, home], rng.randint(1, 3))) for kind in kinds}
+        for kind, count in taken.items():
+            left[kind, home] -= count
+        some = []
+        for machine in sorted({home, *rng.sample(range(number), min(number, 3))}):
+            for starts in product(*(range(most - taken[kind] + 1) for kind, most in kinds.items())):
+                admits = [ANY_VALUE] * len(units)
+                for (kind, count), start in zip(taken.items(), starts, strict=True):
+                    for unit in range(start, start + count):
+                        admits[place[kind, machine, unit]] = 1 << service
+                name = f"service{service:02}.{machine}.{'.'.join(map(str, starts))}"
+                some.append(Candidate(profile(name), tuple(admits)))
+        parts.append(rng.sample(some, len(some)))
+    names = ["{}{}.{}".format(*unit) for unit in units]
+    variables = [Variable(iri(name), tuple(iri(f"{name}.{service}") for service in range(services))) for name in names]
+    return counted(parts, [1] * services, (), tuple(variables))

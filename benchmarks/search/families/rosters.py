@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import random
-from itertools import combinations, product
+from collections.abc import Sequence
+from itertools import combinations, pairwise, product
 
 from benchmarks.search.families.wiring import Goes, counted, in_pairs, iri, made, profile
 from selfconf.model.partition import ANY_VALUE, Candidate, Variable
@@ -135,3 +137,57 @@ def hours(jobs: int, workers: int, projects: int, length: int, seed: int) -> Pro
             admits[project] = sum(1 << (begin + hour) % length for hour in range(last))
         pool.append(Candidate(profile(f"worker{k:03}"), tuple(admits)))
     return counted([[one for one in pool if rng.random() < 0.35] for _ in range(jobs)], [1] * jobs, (), variables)
+
+
+def nurses(number: int, days: int, patterns: int, seed: int) -> Problem:
+    """Nurses who each have one pattern of shifts, of so many; a shift asks for as many of them as one roster gives it.
+
+    Nobody is early after a late shift, or by day after a night, and all work about as much.
+    """
+    rng = random.Random(seed)
+    suited = ["".join(shifts) for shifts in product("eln-", repeat=days) if _is_fair(shifts)]
+    own = [rng.sample(suited, patterns) for _ in range(number)]
+    roster = [rng.choice(some) for some in own]
+    parts = [
+        [
+            Candidate(
+                profile(f"nurse{n:02}.{pattern}", (), [f"{n}.{d}.{s}" for d, s in enumerate(pattern) if s != "-"])
+            )
+            for pattern in some
+        ]
+        for n, some in enumerate(own)
+    ]
+    asked, edges = [1] * number, []
+    for day, shift in product(range(days), "eln"):
+        able = [n for n, some in enumerate(own) if any(pattern[day] == shift for pattern in some)]
+        needed = sum(pattern[day] == shift for pattern in roster)
+        if needed:
+            edges += [(n, len(parts)) for n in able]
+            parts.append([Candidate(profile(f"{shift}{day}.{n:02}", [f"{n}.{day}.{shift}"])) for n in able])
+            asked.append(needed)
+    return counted(parts, asked, edges)
+
+
+def _is_fair(shifts: Sequence[str]) -> bool:
+    """Whether a pattern of shifts leaves time to sleep, and is of four to five shifts a week."""
+    rested = all(pair not in {("n", "e"), ("n", "l"), ("l", "e")} for pair in pairwise(shifts))
+    return rested and 4.0 <= 7 * sum(shift != "-" for shift in shifts) / len(shifts) <= 5.3
+
+
+def duties(trips: int, each: int, bases: int, seed: int) -> Problem:
+    """Duties of so many trips each that between them make all trips: of each base so many, of up to ten times that."""
+    rng = random.Random(seed)
+    order = rng.sample(range(trips), trips)
+    planned: list[set[tuple[int, ...]]] = [set() for _ in range(bases)]
+    for first in range(0, trips, each):
+        rng.choice(planned).add(tuple(sorted(order[first : first + each])))
+    asked = [len(some) for some in planned]
+    for some, count in zip(planned, asked, strict=True):
+        while len(some) < min(10 * count, math.comb(trips, each)):
+            some.add(tuple(sorted(rng.sample(range(trips), each))))
+    parts = [
+        [Candidate(profile(f"base{base}.{k:03}", (), [f"trip{trip}" for trip in made])) for k, made in enumerate(some)]
+        for base, some in enumerate([rng.sample(sorted(some), len(some)) for some in planned])
+    ]
+    timetable = [Candidate(profile("timetable", [f"trip{trip}" for trip in range(trips)]))]
+    return counted([*parts, timetable], [*asked, 1], [(base, bases) for base in range(bases)])

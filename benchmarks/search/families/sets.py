@@ -10,7 +10,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from benchmarks.search.families.arithmetic import circuit, factors, parity, sums
-from benchmarks.search.families.coverage import couples, cover, fields, relay_chain, tiling, trios, triples, trominoes
+from benchmarks.search.families.coverage import (
+    couples,
+    cover,
+    fields,
+    relay_chain,
+    tiling,
+    trios,
+    triples,
+    trominoes,
+    watched,
+)
 from benchmarks.search.families.graphs import coloured_parameters, colouring, cycles, frequencies, tour, tree
 from benchmarks.search.families.installations import (
     beds,
@@ -20,6 +30,7 @@ from benchmarks.search.families.installations import (
     capacity,
     charging,
     licences,
+    machines,
     magazine,
     redundant,
     shifts,
@@ -51,7 +62,18 @@ from benchmarks.search.families.random_relations import (
     regular,
     ring,
 )
-from benchmarks.search.families.rosters import crew, hours, missions, relief, squads, teams, timetable, workshop
+from benchmarks.search.families.rosters import (
+    crew,
+    duties,
+    hours,
+    missions,
+    nurses,
+    relief,
+    squads,
+    teams,
+    timetable,
+    workshop,
+)
 from benchmarks.search.families.tasks import convoy, depot, fusion, museum, orchard, patrol, rooms, theatres
 from benchmarks.search.families.wiring import Family
 
@@ -338,6 +360,26 @@ SETS: Mapping[str, Mapping[str, Family]] = {
             ("48 people, 150 trios", lambda seed: trios(48, 150, seed)),
         ),
     },
+    "choosing rosters": {
+        "nurses": (
+            ("8 nurses, 5 days", lambda seed: nurses(8, 5, 30, seed)),
+            ("10 nurses, 4 days", lambda seed: nurses(10, 4, 30, seed)),
+        ),
+        "machines": (
+            ("10 services, 4 machines", lambda seed: machines(10, 4, 5, 5, seed)),
+            ("16 services, 6 machines", lambda seed: machines(16, 6, 6, 6, seed)),
+        ),
+    },
+    "reporting rosters": {
+        "watched": (
+            ("30 places, twice", lambda seed: watched(30, 36, 13, 2, seed)),
+            ("40 places, three times", lambda seed: watched(40, 40, 19, 3, seed)),
+        ),
+        "duties": (
+            ("24 trips, 2 bases", lambda seed: duties(24, 4, 2, seed)),
+            ("24 trips, 3 bases", lambda seed: duties(24, 4, 3, seed)),
+        ),
+    },
 }
 """The families by what they are for."""
 
@@ -361,6 +403,10 @@ SMALLEST: Mapping[str, Family] = {
     "triples": (("2 of 5 points", lambda seed: triples(5, 2, seed)),),
     "couples": (("6 people", lambda seed: couples(6, 3, seed)),),
     "trominoes": (("3 x 3", lambda seed: trominoes(3, 0, seed)),),
+    "nurses": (("3 nurses, 3 days", lambda seed: nurses(3, 3, 4, seed)),),
+    "machines": (("3 services, 2 machines", lambda seed: machines(3, 2, 3, 3, seed)),),
+    "watched": (("4 places, twice", lambda seed: watched(4, 8, 5, 2, seed)),),
+    "duties": (("6 trips, 2 bases", lambda seed: duties(6, 2, 2, seed)),),
     "trios": (("6 people, 6 trios", lambda seed: trios(6, 6, seed)),),
     "quorum": (("5 roles", lambda seed: quorum(5, 3, 4, 3, seed)),),
     "fields": (("2 and 2 of 6", lambda seed: fields(5, 6, 2, 2, seed)),),
