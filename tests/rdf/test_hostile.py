@@ -276,8 +276,8 @@ LIMITS = (
     f"judging all shapes that inputs accept, in processor time | {acceptance.SECONDS:g} s",
     f"{queries.LONGEST_QUERY:,} characters, brackets {queries.DEEPEST_QUERY} deep",
     f"{patterns.PATTERN_SECONDS:g} s, {patterns.LONGEST_TRY:g} s for one value | a component is left out",
-    f"{shacl.SHARE_SECONDS:g} s, or twice the time of the slowest component that conforms, if that is more, up to"
-    f" {shacl.MOST_SHARE_SECONDS:g} s; where the shape takes more than {shacl.SHARE_SECONDS / 4:g} s with nothing said",
+    f"{shacl.SHARE_SECONDS:g} s, or twice the time of the slowest component that conforms, if that is more",
+    f"up to {shacl.MOST_SHARE_SECONDS:g} s; where the shape takes more than {shacl.SHARE_SECONDS / 4:g} s",
     f"{shacl.FAILURE_SECONDS:g} s for those left out, {shacl.SLOW_SECONDS:g} s for others",
     f"{shacl.SHAPE_SECONDS:g} s | `configure` names the shape",
     f"XML entities of one ontology; none may refer to another | {formats.LARGEST_GROWTH >> 20} MiB",
