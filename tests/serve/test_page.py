@@ -28,6 +28,7 @@ from selfconf.serve.metrics import Metrics
 from selfconf.serve.problems import problem
 from selfconf.serve.watching.change import Body, EcologyChange
 from tests.cli.processes import Home, dormant
+from tests.harness.effort import thorough
 from tests.lab import PREFIXES, iri
 from tests.sdk.living import until
 from tests.serve.chromium import CHROMIUM, Chromium, Page
@@ -394,6 +395,7 @@ def test_a_page_that_has_missed_something_reads_the_advertisement_anew(
     page.says(".turtle", "attic")
 
 
+@thorough
 def test_a_thousand_components_are_grouped_and_found(
     shown: Callable[[Board], Shown],
 ) -> None:
