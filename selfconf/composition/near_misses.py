@@ -141,8 +141,7 @@ class _NearRole:
     @property
     def compared(self) -> int:
         """How many pairs of ports have been compared."""
-        ports = self.__dict__.get("_ports")
-        return ports.compared if isinstance(ports, PortLikeness) else 0
+        return self._ports.compared if "_ports" in vars(self) and self._ports else 0
 
     def kept_out(self) -> Iterator[NearMiss]:
         """The components that only their ports keep out of the role."""

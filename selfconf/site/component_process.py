@@ -16,8 +16,6 @@ from selfconf.site.process_group import ProcessGroup
 
 MOST_WATCHED = 8
 """Of how many components of a process the lives are followed: they share a process, and if that hangs, they all do."""
-
-
 SEEN_BY_ALL = 1.0
 """Seconds for which a component must have lived before all that wait for it count as having seen that."""
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from selfconf.configurator.state import Phase
+from selfconf.deployment import TaskRunner
 from selfconf.deployment.components.audits import AUDIT
 from selfconf.deployment.retries import TRY_AGAIN
 from selfconf.model.configuration import Configuration
@@ -84,16 +85,22 @@ ASKED = PREFIXES + (
 )
 
 
-@pytest.mark.parametrize(("goal", "shared"), [("x", True), ("y", False)])
-def test_a_component_is_shared_with_a_task_that_gives_it_the_same_values_alone(
-    tmp_path: Path, goal: str, shared: bool
-) -> None:
-    lab = Lab(tmp_path, advertised=SHARED)
+def asking(folder: Path) -> tuple[Lab, TaskRunner]:
+    """An ecology in which a task has an oracle that it has given a value, and that task."""
+    lab = Lab(folder, advertised=SHARED)
     lab.site("shared", *SHARED)
     for name in SHARED:
         lab.component(name)
     first = lab.agent(ASKED, (("goal", "x"),), name="first")
     assert lab.running(first)
+    return lab, first
+
+
+@pytest.mark.parametrize(("goal", "shared"), [("x", True), ("y", False)])
+def test_a_component_is_shared_with_a_task_that_gives_it_the_same_values_alone(
+    tmp_path: Path, goal: str, shared: bool
+) -> None:
+    lab, _ = asking(tmp_path)
     lab.events.clear()
     second = lab.agent(ASKED, (("goal", goal),), name="second")
     lab.let_pass(1.0)
@@ -106,12 +113,7 @@ def test_a_component_is_shared_with_a_task_that_gives_it_the_same_values_alone(
 
 
 def test_a_task_that_waits_shares_what_another_that_wants_the_same_has_got_before_it_at_once(tmp_path: Path) -> None:
-    lab = Lab(tmp_path, advertised=SHARED)
-    lab.site("shared", *SHARED)
-    for name in SHARED:
-        lab.component(name)
-    first = lab.agent(ASKED, (("goal", "x"),), name="first")
-    assert lab.running(first)
+    lab, first = asking(tmp_path)
     waiting = [lab.agent(ASKED, (("goal", "y"),), patient=True, name=name) for name in ("second", "third")]
     lab.let_pass(TRY_AGAIN / 2)
     first.stop()

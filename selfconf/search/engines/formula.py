@@ -18,7 +18,7 @@ FEW_TO_COUNT = 4
 
 
 class Counted(IntEnum):
-    """Which bounds a solver that counts by itself gets as clauses that count, too, about which it can learn."""
+    """Which bounds a solver that counts by itself gets as clauses that count instead, about which it can learn."""
 
     NONE = 0
     MANY = 1
