@@ -302,7 +302,6 @@ def test_astrid_arrives_with_keys_too(tmp_path: Path, demo: list[Demo]) -> None:
     assert running.gone()
 
 
-@thorough
 def test_the_drive_is_shown_in_a_browser_until_ctrl_c(
     tmp_path: Path, demo: list[Demo], browser: Chromium | None, yardstick: Yardstick
 ) -> None:
